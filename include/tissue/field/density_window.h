@@ -1,0 +1,45 @@
+#pragma once
+
+#include "tissue/field/implicit_surface.h"
+
+namespace tissue {
+
+/// Maps values to densities: `low` to 0 and `high` to `d_max`, linearly, clamped to [1, d_max], so
+/// that a density is always positive.
+struct DensityWindow {
+  double low = 0.0;
+  double high = 255.0;
+  double d_max = 255.0;
+
+  double density(double value) const {
+    const double scaled = (value - low) * (d_max / (high - low));
+    return std::clamp(scaled, 1.0, d_max);
+  }
+};
+
+/// The window that does not depend on the encoding: the identity if all values lie in [0, d_max],
+/// else the range of the voxels inside the surface.
+DensityWindow default_window(const Volume& volume, const ImplicitSurface& surface, double d_max);
+
+/// The mean density over a tet, by the midpoint rule on its 8^k congruent parts: k grows with the
+/// tet's size until a part's long edge is at most 3 voxels (a part then holds about two voxels).
+class TetSampling {
+ public:
+  /// `edge` is the tet's long edge [m]; `spacing` that of the voxels.
+  TetSampling(double edge, const Vec3& spacing);
+
+  template <class Function>
+  double mean(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
+              const Function& density) const {
+    double sum = 0.0;
+    for (const Eigen::Vector4d& w : weights_) {
+      sum += density(w[0] * a + w[1] * b + w[2] * c + w[3] * d);
+    }
+    return sum / static_cast<double>(weights_.size());
+  }
+
+ private:
+  std::vector<Eigen::Vector4d> weights_;
+};
+
+}  // namespace tissue

@@ -1,0 +1,99 @@
+#pragma once
+
+#include "tissue/field/sample.h"
+
+#include <memory>
+
+namespace tissue {
+
+/// The organ's boundary: where an implicit function f crosses zero. f < 0 inside. Beyond the outer
+/// faces of the volume's voxels f > 0, so that an organ that touches the border gets a flat cap.
+struct ImplicitSurface {
+  std::shared_ptr<const Volume> field;
+  double iso = 0.0;
+  /// True where values above `iso` are inside, as in an image; false for a distance map.
+  bool inside_above = true;
+};
+
+/// Inside where the value is above `iso`. Throws InputError E_PARAM if `iso` is not finite and
+/// E_EMPTY_SURFACE, with the range of the data, if no voxel is inside.
+ImplicitSurface surface_at_iso(std::shared_ptr<const Volume> volume, double iso);
+
+/// Inside where the mask is set. A `label` mask is a set of voxels (value above 0): the surface is
+/// the zero of their signed distance map. Any other mask is a coverage, set where it is above half
+/// of its largest value. Throws InputError E_EMPTY_SURFACE if nothing is set.
+ImplicitSurface surface_of_mask(const std::shared_ptr<const Volume>& mask);
+
+/// The volume of the voxels whose centres are inside [m³].
+double voxel_volume_inside(const ImplicitSurface& surface);
+
+/// Evaluates an implicit surface at places in the grid's frame [m].
+template <class Sampler>
+class ImplicitFunction {
+ public:
+  ImplicitFunction(const ImplicitSurface& surface, const Sampler& sampler)
+      : sampler_(sampler), iso_(surface.iso), sign_(surface.inside_above ? -1.0 : 1.0) {
+    const Grid& grid = surface.field->grid;
+    low_ = -0.5 * grid.spacing;
+    for (int axis = 0; axis < 3; ++axis) {
+      high_[axis] = (static_cast<double>(grid.size[axis]) - 0.5) * grid.spacing[axis];
+    }
+    // The cap is a steep wall: its slope only has to have the sign right.
+    const std::array<double, 2> range = value_range(*surface.field);
+    cap_slope_ = std::max(range[1] - range[0], std::abs(range[1])) / grid.spacing.minCoeff();
+    if (!(cap_slope_ > 0.0)) cap_slope_ = 1.0;
+  }
+
+  double operator()(const Vec3& place) const {
+    return std::max(field(place), cap_slope_ * beyond_border(place));
+  }
+  /// The function without the cap.
+  double field(const Vec3& place) const { return sign_ * (sampler_(place) - iso_); }
+  /// Distance to the outer faces of the voxels along the nearest axis [m], positive outside.
+  double beyond_border(const Vec3& place) const {
+    return std::max((low_ - place).maxCoeff(), (place - high_).maxCoeff());
+  }
+
+ private:
+  Sampler sampler_;
+  double iso_, sign_, cap_slope_;
+  Vec3 low_, high_;
+};
+
+/// Calls `body(f)` with the implicit function of the surface.
+template <class Body>
+decltype(auto) with_implicit_function(const ImplicitSurface& surface, Body&& body) {
+  return with_sampler(*surface.field, [&](const auto& sampler) -> decltype(auto) {
+    return body(ImplicitFunction<std::decay_t<decltype(sampler)>>(surface, sampler));
+  });
+}
+
+/// Where f crosses zero between `a` and `b`, as the fraction of the way from `a`. `f_a` and `f_b`
+/// have opposite signs; the result depends on the order of the ends only in its rounding.
+template <class Function>
+double bracketed_root(const Function& f, const Vec3& a, const Vec3& b, double f_a, double f_b) {
+  // Illinois' variant of regula falsi: superlinear where f is smooth, and safe on steps.
+  double low = 0.0, high = 1.0, previous = -1.0;
+  int kept_end = 0;
+  for (int i = 0; i < 100; ++i) {
+    double t = (low * f_b - high * f_a) / (f_b - f_a);
+    if (!(t > low && t < high)) t = 0.5 * (low + high);
+    const double f_t = f(a + t * (b - a));
+    if (f_t == 0.0 || std::abs(t - previous) < 1e-7) return t;
+    previous = t;
+    if ((f_t < 0.0) == (f_b < 0.0)) {
+      high = t;
+      f_b = f_t;
+      if (kept_end == -1) f_a *= 0.5;
+      kept_end = -1;
+    } else {
+      low = t;
+      f_a = f_t;
+      if (kept_end == 1) f_b *= 0.5;
+      kept_end = 1;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace tissue

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "tissue/base/tet_mesh.h"
+
+namespace tissue {
+
+/// What a simulation never changes.
+struct Body {
+  /// Rest positions [m].
+  std::vector<Vec3f> rest;
+  std::vector<Tet> tets;
+  std::vector<Triangle> surface;
+  /// At the vertices.
+  std::vector<float> densities;
+};
+
+/// Throws InputError as check_mesh does.
+Body body_of(const TetMesh& mesh);
+
+/// What a simulation moves.
+struct State {
+  /// Deformed positions [m], in the order of the rest positions.
+  std::vector<Vec3> positions;
+};
+
+/// At rest, to the last bit.
+State rest_state(const Body& body);
+
+/// How far a state is from being invalid: F maps a tet's rest edges to its deformed ones.
+struct DeformationQuality {
+  double min_det_f = 1.0;
+  std::size_t inverted = 0;
+};
+DeformationQuality deformation_quality(const Body& body, const State& state);
+
+}  // namespace tissue

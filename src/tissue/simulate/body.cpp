@@ -1,0 +1,39 @@
+#include "tissue/simulate/body.h"
+
+#include "tissue/base/check_mesh.h"
+
+#include <algorithm>
+
+namespace tissue {
+
+Body body_of(const TetMesh& mesh) {
+  check_mesh(mesh);
+  Body body;
+  body.rest = mesh.vertices;
+  body.tets = mesh.tets;
+  body.surface = mesh.surface.empty() ? boundary_of(mesh.tets, mesh.vertices.size()) : mesh.surface;
+  body.densities = mesh.densities;
+  return body;
+}
+
+State rest_state(const Body& body) {
+  State state;
+  state.positions.reserve(body.rest.size());
+  for (const Vec3f& place : body.rest) state.positions.push_back(place.cast<double>());
+  return state;
+}
+
+DeformationQuality deformation_quality(const Body& body, const State& state) {
+  DeformationQuality quality;
+  for (const Tet& tet : body.tets) {
+    const auto& x = state.positions;
+    const double det_f =
+        determinant(x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]) /
+        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    quality.min_det_f = std::min(quality.min_det_f, det_f);
+    quality.inverted += det_f <= 0.0;
+  }
+  return quality;
+}
+
+}  // namespace tissue
