@@ -46,7 +46,8 @@ std::vector<double> numbers(const std::string& option, const std::string& text, 
   return values;
 }
 
-int whole_number(const std::string& option, const std::string& text, double lowest, double highest) {
+int whole_number(const std::string& option, const std::string& text, double lowest,
+                 double highest) {
   const double value = numbers(option, text, 1)[0];
   if (value != std::floor(value) || value < lowest || value > highest) {
     throw InputError(option == "sections"  ? ErrorCode::kN
@@ -62,29 +63,29 @@ po::options_description described() {
   const tissue::MeshOptions defaults;
   const auto text = [](double value) { return tissue::to_text(value); };
   po::options_description options("mesh_volume VOLUME [options] -o OUT.vtu");
-  options.add_options()
-      ("help,h", "this text")
-      ("volume", po::value<std::string>(), "NIfTI, NRRD or MetaImage file")
-      ("mask", po::value<std::string>(), "volume file on the same grid; the organ is where it is set")
-      ("iso", po::value<std::string>()->default_value(text(defaults.iso_value)),
-       "without a mask the organ is where the value is above this")
-      ("tumour", po::value<std::vector<std::string>>(),
-       "X,Y,Z,R,VALUE: put in a ball of this value [m, world]")
-      ("spacing", po::value<std::string>(), "long edge of the lattice [m]")
-      ("initial", po::value<std::string>()->default_value(text(defaults.initial_tetrahedra)),
-       "without a spacing: tets of the uniform stage, met within 2 %")
-      ("sections", po::value<std::string>()->default_value(text(defaults.levels.sections)),
-       "N: sections of the density's distribution, so levels")
-      ("base-level", po::value<std::string>()->default_value(text(defaults.levels.base_level)),
-       "level of the densest section")
-      ("window", po::value<std::string>(), "LO,HI: values that map to density 0 and d_max")
-      ("smooth-levels", po::value<std::string>()->default_value(text(defaults.levels.smooth_levels)),
-       "rounds of averaging before levels are taken; 0 is the paper to the letter")
-      ("component", po::value<std::string>()->default_value("largest"), "largest or all")
-      ("stage", po::value<std::string>()->default_value("refined"), "lattice or refined")
-      ("threads", po::value<std::string>()->default_value(text(defaults.threads)), "0: all")
-      ("output,o", po::value<std::string>(), "VTU file to write")
-      ("stats", po::value<std::string>(), "JSON file to write");
+  options.add_options()("help,h", "this text")("volume", po::value<std::string>(),
+                                               "NIfTI, NRRD or MetaImage file")(
+      "mask", po::value<std::string>(),
+      "volume file on the same grid; the organ is where it is set")(
+      "iso", po::value<std::string>()->default_value(text(defaults.iso_value)),
+      "without a mask the organ is where the value is above this")(
+      "tumour", po::value<std::vector<std::string>>(),
+      "X,Y,Z,R,VALUE: put in a ball of this value [m, world]")("spacing", po::value<std::string>(),
+                                                               "long edge of the lattice [m]")(
+      "initial", po::value<std::string>()->default_value(text(defaults.initial_tetrahedra)),
+      "without a spacing: tets of the uniform stage, met within 2 %")(
+      "sections", po::value<std::string>()->default_value(text(defaults.levels.sections)),
+      "N: sections of the density's distribution, so levels")(
+      "base-level", po::value<std::string>()->default_value(text(defaults.levels.base_level)),
+      "level of the densest section")("window", po::value<std::string>(),
+                                      "LO,HI: values that map to density 0 and d_max")(
+      "smooth-levels", po::value<std::string>()->default_value(text(defaults.levels.smooth_levels)),
+      "rounds of averaging before levels are taken; 0 is the paper to the letter")(
+      "component", po::value<std::string>()->default_value("largest"), "largest or all")(
+      "stage", po::value<std::string>()->default_value("refined"), "lattice or refined")(
+      "threads", po::value<std::string>()->default_value(text(defaults.threads)), "0: all")(
+      "output,o", po::value<std::string>(), "VTU file to write")("stats", po::value<std::string>(),
+                                                                 "JSON file to write");
   return options;
 }
 
@@ -191,8 +192,12 @@ int main(int argc, char** argv) {
     po::variables_map given;
     // Negative numbers are values, not options.
     const auto style = po::command_line_style::unix_style ^ po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv).options(options).positional(positions)
-                  .style(style).run(), given);
+    po::store(po::command_line_parser(argc, argv)
+                  .options(options)
+                  .positional(positions)
+                  .style(style)
+                  .run(),
+              given);
     if (given.count("help") != 0) {
       std::cout << options;
       return 0;

@@ -30,8 +30,7 @@ TEST(EdgeTopology, GivesCommonEdgesOneNumber) {
 }
 
 TEST(DihedralRange, KnowsTheRegularTetAndTheCornerOfACube) {
-  const DihedralRange regular =
-      dihedral_range({1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1});
+  const DihedralRange regular = dihedral_range({1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1});
   EXPECT_NEAR(regular.min_angle(), std::acos(1.0 / 3.0), 1e-12);
   EXPECT_NEAR(regular.max_angle(), std::acos(1.0 / 3.0), 1e-12);
   const DihedralRange corner = dihedral_range({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1});

@@ -27,7 +27,8 @@ TEST(DensityWindow, V17_MakesEveryDensityPositive) {
 
 TEST(DensityWindow, LeavesEightBitValuesAsTheyAreWhateverTheEncoding) {
   const auto ramp = [](double x, double, double) { return 10.0 * x; };
-  for (const auto& volume : {tissue_test::byte_volume(16, ramp), tissue_test::float_volume(16, ramp)}) {
+  for (const auto& volume :
+       {tissue_test::byte_volume(16, ramp), tissue_test::float_volume(16, ramp)}) {
     const DensityWindow window = default_window(*volume, surface_at_iso(volume, 20.0), 255.0);
     EXPECT_EQ(window.density(73.0), 73.0);
     EXPECT_EQ(window.density(0.0), 1.0);
@@ -46,8 +47,9 @@ TEST(TetSampling, IntegratesALinearDensityExactlyAtEverySize) {
 TEST(TetSampling, SeesAStepInsideALargeTet) {
   // Half of the tet has density 10: a sample at the centroid alone would say 0 or 10.
   const auto density = [](const Vec3& p) { return p.x() < 0.2063 ? 10.0 : 0.0; };
-  const double mean = TetSampling(12.0, Vec3::Ones())
-                          .mean(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), density);
+  const double mean =
+      TetSampling(12.0, Vec3::Ones())
+          .mean(Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), density);
   EXPECT_NEAR(mean, 5.0, 1.0);
 }
 

@@ -43,12 +43,17 @@ TEST(InsertTumour, FillsABallInTheWorldFrame) {
 TEST(InsertTumour, RefusesWhatCannotBePut) {
   Volume volume = grey();
   const Vec3 centre = volume.grid.to_world(Vec3(10e-3, 6e-3, 8e-3));
-  EXPECT_EQ(refusal([&] { insert_tumour(volume, {centre, 4e-3, 300.0}); }),
+  EXPECT_EQ(refusal([&] {
+              insert_tumour(volume, {centre, 4e-3, 300.0});
+            }),
             "E_PARAM: tumour: value 300 does not fit into voxels of 8UC1");
-  EXPECT_EQ(refusal([&] { insert_tumour(volume, {centre, -1.0, 255.0}); }),
+  EXPECT_EQ(refusal([&] {
+              insert_tumour(volume, {centre, -1.0, 255.0});
+            }),
             "E_PARAM: tumour: radius -1 m is not positive");
-  EXPECT_EQ(refusal([&] { insert_tumour(volume, {Vec3::Zero(), 4e-3, 255.0}); })
-                .find("E_PARAM: tumour: no voxel lies within"),
+  EXPECT_EQ(refusal([&] {
+              insert_tumour(volume, {Vec3::Zero(), 4e-3, 255.0});
+            }).find("E_PARAM: tumour: no voxel lies within"),
             0u);
 }
 
@@ -56,17 +61,21 @@ TEST(CropVolume, KeepsVoxelsWhereTheyAre) {
   Volume volume = grey();
   const Vec3 centre = volume.grid.to_world(Vec3(10e-3, 6e-3, 8e-3));
   insert_tumour(volume, {centre, 1e-3, 200.0});
-  const Volume cropped = crop_volume(
-      volume, {centre - Vec3::Constant(3.2e-3), centre + Vec3(2.2e-3, 3.2e-3, 4.2e-3)});
+  const Volume cropped =
+      crop_volume(volume, {centre - Vec3::Constant(3.2e-3), centre + Vec3(2.2e-3, 3.2e-3, 4.2e-3)});
   EXPECT_EQ(cropped.grid.size, (GridSize{7, 6, 8}));
   EXPECT_EQ(value_at_world(cropped, centre), 200);
   EXPECT_EQ(value_at_world(cropped, centre + Vec3(2e-3, 0, 0)), 50);
 }
 
 TEST(CropVolume, RefusesABoxWithoutVoxels) {
-  EXPECT_EQ(refusal([] { crop_volume(grey(), {Vec3::Constant(5), Vec3::Constant(6)}); }),
+  EXPECT_EQ(refusal([] {
+              crop_volume(grey(), {Vec3::Constant(5), Vec3::Constant(6)});
+            }),
             "E_PARAM: crop: the box holds no voxel of the volume");
-  EXPECT_EQ(refusal([] { crop_volume(grey(), {Vec3::Constant(1), Vec3::Zero()}); }),
+  EXPECT_EQ(refusal([] {
+              crop_volume(grey(), {Vec3::Constant(1), Vec3::Zero()});
+            }),
             "E_PARAM: crop: its corners do not span a box");
 }
 

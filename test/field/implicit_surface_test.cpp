@@ -42,8 +42,9 @@ TEST(Nearest, NeverBlendsLabels) {
 
 TEST(BracketedRoot, FindsTheCrossingOfASaturatedField) {
   // Grey values saturate: a straight line between the ends would be far off.
-  const auto volume = byte_volume(
-      16, [](double x, double, double) { return x < 4.0 ? 255.0 : x < 5.0 ? 200.0 : 0.0; });
+  const auto volume = byte_volume(16, [](double x, double, double) {
+    return x < 4.0 ? 255.0 : x < 5.0 ? 200.0 : 0.0;
+  });
   const ImplicitSurface surface = surface_at_iso(volume, 100.0);
   with_implicit_function(surface, [](const auto& f) {
     const Vec3 a(0, 5e-3, 5e-3), b(14e-3, 5e-3, 5e-3);
@@ -95,8 +96,8 @@ TEST(OpenMask, RemovesAThreadButNotTheBall) {
 }
 
 TEST(SmoothMask, KeepsTheVolumeOfABallAndSmoothsItsSteps) {
-  const auto volume =
-      byte_volume(32, [](double x, double y, double z) { return distance(x, y, z) < 10.0 ? 9 : 0; });
+  const auto volume = byte_volume(
+      32, [](double x, double y, double z) { return distance(x, y, z) < 10.0 ? 9 : 0; });
   const auto mask = std::make_shared<Volume>(threshold_mask(*volume, 1.0));
   const auto smooth = std::make_shared<Volume>(smooth_mask(*mask, 1.5));
   const ImplicitSurface surface = surface_of_mask(smooth);

@@ -27,8 +27,8 @@ std::string write_meta_image(const std::string& matrix) {
 // Where the voxel with this value lies in the world.
 Vec3 place_of(const tissue::Volume& volume, std::uint8_t value) {
   const auto& values = std::get<std::vector<std::uint8_t>>(volume.voxels);
-  const auto i = static_cast<std::uint32_t>(
-      std::find(values.begin(), values.end(), value) - values.begin());
+  const auto i =
+      static_cast<std::uint32_t>(std::find(values.begin(), values.end(), value) - values.begin());
   const auto& n = volume.grid.size;
   return volume.grid.to_world(
       Vec3(i % n[0], i / n[0] % n[1], i / n[0] / n[1]).cwiseProduct(volume.grid.spacing));
@@ -46,7 +46,8 @@ TEST(ReadVolume, GivesTheShippedBrainInMetresAndRas) {
 
 TEST(ReadVolume, V11_PutsEveryVoxelWhereTheDirectionMatrixSays) {
   // Identity, a quarter turn, and a left-handed flip of z.
-  for (const std::string matrix : {"1 0 0 0 1 0 0 0 1", "0 1 0 -1 0 0 0 0 1", "1 0 0 0 1 0 0 0 -1"}) {
+  for (const std::string matrix :
+       {"1 0 0 0 1 0 0 0 1", "0 1 0 -1 0 0 0 0 1", "1 0 0 0 1 0 0 0 -1"}) {
     const tissue::Volume volume = tissue::read_volume(write_meta_image(matrix));
     EXPECT_NEAR(volume.grid.axes.determinant(), 1.0, 1e-12) << matrix;
     // MetaImage lists the matrix axis by axis.
@@ -72,8 +73,9 @@ TEST(ReadVolume, V11_RefusesAxesThatAreNotOrthonormal) {
 }
 
 TEST(ReadVolume, SaysWhichFileItCannotRead) {
-  EXPECT_EQ(refusal([] { tissue::read_volume("/nowhere/brain.nii.gz"); })
-                .find("E_FILE: volume: '/nowhere/brain.nii.gz' cannot be read"),
+  EXPECT_EQ(refusal([] {
+              tissue::read_volume("/nowhere/brain.nii.gz");
+            }).find("E_FILE: volume: '/nowhere/brain.nii.gz' cannot be read"),
             0u);
   const std::string path =
       (std::filesystem::temp_directory_path() / "tissue_no_volume.nii.gz").string();

@@ -30,7 +30,8 @@ TEST(BccTets, HaveTheirLongEdgesInPlaceAndPositiveVolume) {
       }
     }
     std::array<Vec3, 4> x;
-    for (int i = 0; i < 4; ++i) x[i] = Vec3(tet.corners[i][0], tet.corners[i][1], tet.corners[i][2]);
+    for (int i = 0; i < 4; ++i)
+      x[i] = Vec3(tet.corners[i][0], tet.corners[i][1], tet.corners[i][2]);
     // a³/12 with a = 2.
     EXPECT_NEAR(determinant(x[0], x[1], x[2], x[3]) / 6.0, 8.0 / 12.0, 1e-12);
   }
@@ -76,10 +77,14 @@ TEST(FillTet, FillsExactlyWhatIsInside) {
       }
       const int out = 4 - in - on;
       double part = 1.0;
-      if (in == 0) part = 0.0;
-      else if (in == 1) part = std::pow(0.5, out);
-      else if (out == 1) part = 1.0 - std::pow(0.5, in);
-      else if (out == 2) part = 0.5;
+      if (in == 0)
+        part = 0.0;
+      else if (in == 1)
+        part = std::pow(0.5, out);
+      else if (out == 1)
+        part = 1.0 - std::pow(0.5, in);
+      else if (out == 2)
+        part = 0.5;
       EXPECT_NEAR(filled_volume(tet, signs), part * 8.0 / 12.0, 1e-12) << "signs " << code;
     }
   }

@@ -180,22 +180,36 @@ TEST(BuildMesh, M1_to_M4_RefusesBadRequestsByFieldAndValue) {
   const std::vector<BadRequest> requests = {
       {"E_N: level_sections: 0 is not within 1 to 255",
        [](MeshOptions& o) { o.levels.sections = 0; }},
-      {"E_TOO_MANY_TETS: level_sections: 20 on ",
-       [](MeshOptions& o) { o.levels.sections = 20; }},
+      {"E_TOO_MANY_TETS: level_sections: 20 on ", [](MeshOptions& o) { o.levels.sections = 20; }},
       {"E_NTINIT: initial_tetrahedra: 0 is below 24",
-       [](MeshOptions& o) { o.spacing = 0.0; o.initial_tetrahedra = 0; }},
+       [](MeshOptions& o) {
+         o.spacing = 0.0;
+         o.initial_tetrahedra = 0;
+       }},
       {"E_NTINIT: initial_tetrahedra: 1 is below 24",
-       [](MeshOptions& o) { o.spacing = 0.0; o.initial_tetrahedra = 1; }},
+       [](MeshOptions& o) {
+         o.spacing = 0.0;
+         o.initial_tetrahedra = 1;
+       }},
       {"E_TOO_MANY_TETS: initial_tetrahedra: 1000000000 is over",
-       [](MeshOptions& o) { o.spacing = 0.0; o.initial_tetrahedra = 1000000000; }},
+       [](MeshOptions& o) {
+         o.spacing = 0.0;
+         o.initial_tetrahedra = 1000000000;
+       }},
       {"E_TOO_MANY_TETS: initial_tetrahedra: 4294967295 is over",
-       [](MeshOptions& o) { o.spacing = 0.0; o.initial_tetrahedra = static_cast<std::uint32_t>(-1); }},
+       [](MeshOptions& o) {
+         o.spacing = 0.0;
+         o.initial_tetrahedra = static_cast<std::uint32_t>(-1);
+       }},
       {"E_PARAM: iso_value: nan", [nan](MeshOptions& o) { o.iso_value = nan; }},
       {"E_PARAM: spacing: -1 m", [](MeshOptions& o) { o.spacing = -1.0; }},
       {"E_PARAM: spacing: inf m", [](MeshOptions& o) { o.spacing = HUGE_VAL; }},
       {"E_PARAM: d_max: nan", [nan](MeshOptions& o) { o.levels.d_max = nan; }},
       {"E_PARAM: base_level: -1", [](MeshOptions& o) { o.levels.base_level = -1; }},
-      {"E_PARAM: window: 5 to 5", [](MeshOptions& o) { o.window = {{5.0, 5.0}}; }},
+      {"E_PARAM: window: 5 to 5",
+       [](MeshOptions& o) {
+         o.window = {{5.0, 5.0}};
+       }},
       {"E_EMPTY_SURFACE: iso_value: 1000 leaves nothing inside",
        [](MeshOptions& o) { o.iso_value = 1000.0; }},
   };

@@ -66,7 +66,8 @@ TEST(Levels, EqualALiteralSecondImplementationOnRandomHistograms) {
   std::mt19937 random(7);
   for (int round = 0; round < 200; ++round) {
     const double mean = std::uniform_real_distribution<>(10, 240)(random);
-    std::normal_distribution<> tissue_density(mean, std::uniform_real_distribution<>(0, 60)(random));
+    std::normal_distribution<> tissue_density(mean,
+                                              std::uniform_real_distribution<>(0, 60)(random));
     std::vector<double> densities(std::uniform_int_distribution<std::size_t>(1, 400)(random));
     for (double& density : densities) {
       density = std::min(255.0, std::max(1.0, tissue_density(random)));
@@ -90,8 +91,7 @@ TEST(Levels, M6_TheDensestClassGetsTheSmallestLevelWhenValuesAreFewerThanSection
   std::vector<double> densities(50, 20.0);
   densities.insert(densities.end(), 50, 200.0);
   expect_literal(densities, 5, 0);
-  const auto levels =
-      wished_levels(densities, density_thresholds(densities, with_sections(5)), 0);
+  const auto levels = wished_levels(densities, density_thresholds(densities, with_sections(5)), 0);
   EXPECT_EQ(levels.back(), 0);
   EXPECT_GT(levels.front(), 0);
 }

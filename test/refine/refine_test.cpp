@@ -126,7 +126,8 @@ TEST(Refine, KeepsTetsOfTheLatticesOwnShapeWithin18And162Degrees) {
 TEST(Refine, GivesTheSameBitsWithAnyNumberOfThreads) {
   const RefinableLattice lattice = ball_lattice(0.004);
   std::vector<std::uint8_t> levels(lattice.mesh.tets.size());
-  for (std::size_t t = 0; t < levels.size(); ++t) levels[t] = static_cast<std::uint8_t>(t / 700 % 3);
+  for (std::size_t t = 0; t < levels.size(); ++t)
+    levels[t] = static_cast<std::uint8_t>(t / 700 % 3);
   const TetMesh one = as_mesh(refine(lattice, levels, 1u << 30, 1), 0);
   const TetMesh many = as_mesh(refine(lattice, levels, 1u << 30, 4), 0);
   EXPECT_EQ(mesh_uuid(one), mesh_uuid(many));

@@ -21,8 +21,8 @@ std::array<Vec3, 10> points_of_reference_tet() {
   return x;
 }
 
-// Positive tets whose volumes add up to the whole, whose inner faces match and whose outer faces are
-// those that the pattern prescribes: such a set is a triangulation.
+// Positive tets whose volumes add up to the whole, whose inner faces match and whose outer faces
+// are those that the pattern prescribes: such a set is a triangulation.
 void expect_splits(const SplitPattern& pattern, const Splitting& splitting) {
   const auto x = points_of_reference_tet();
   double volume = 0.0;
@@ -75,7 +75,8 @@ TEST(Splittings, ExistForAllPatternsUnderEveryOrderOfTheEdges) {
 }
 
 TEST(Splittings, DoNotExistForCyclicDiagonals) {
-  // Edges 01, 12, 20 and 03, 13, 23 with each corner's comparison pointing around: no order does so.
+  // Edges 01, 12, 20 and 03, 13, 23 with each corner's comparison pointing around: no order does
+  // so.
   SplitPattern pattern;
   pattern.marks = 1u << tet_edge(0, 3) | 1u << tet_edge(1, 3) | 1u << tet_edge(2, 3);
   pattern.diagonal_start = {1, 2, 0, -1};

@@ -9,8 +9,8 @@ namespace {
 
 using namespace tissue;
 
-const std::vector<Vec3> kRest = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.015, 0}, {0, 0, 0.0299},
-                                 {0, 0, 0.03}, {0.02, 0.02, 0.02}};
+const std::vector<Vec3> kRest = {{0, 0, 0},      {0.01, 0, 0}, {0, 0.015, 0},
+                                 {0, 0, 0.0299}, {0, 0, 0.03}, {0.02, 0.02, 0.02}};
 const std::vector<double> kDensities = {50.0, 100.0, 25.0, 255.0, 10.0, 10.0};
 
 PushOptions literal() { return {0.03, true, 0.0, true}; }
@@ -27,12 +27,12 @@ TEST(PushField, LiteralFollowsFigure4ByHand) {
   // h = (R − d)/R · h_t · t·t/(2ρ), for each vertex by hand.
   const std::vector<Vec3> moved = pushed(literal(), Vec3(0.002, 0, 0), 9.0);
   const double by_hand[6] = {
-      1.0 * 0.002 * 9.0 / 100.0,                          // d = 0,      ρ = 50
-      (2.0 / 3.0) * 0.002 * 9.0 / 200.0,                  // d = 10 mm,  ρ = 100
-      0.5 * 0.002 * 9.0 / 50.0,                           // d = 15 mm,  ρ = 25
-      (0.0001 / 0.03) * 0.002 * 9.0 / 510.0,              // d = 29.9 mm, ρ = 255
-      0.0,                                                // d = 30 mm: not below R
-      0.0,                                                // d = 34.6 mm
+      1.0 * 0.002 * 9.0 / 100.0,              // d = 0,      ρ = 50
+      (2.0 / 3.0) * 0.002 * 9.0 / 200.0,      // d = 10 mm,  ρ = 100
+      0.5 * 0.002 * 9.0 / 50.0,               // d = 15 mm,  ρ = 25
+      (0.0001 / 0.03) * 0.002 * 9.0 / 510.0,  // d = 29.9 mm, ρ = 255
+      0.0,                                    // d = 30 mm: not below R
+      0.0,                                    // d = 34.6 mm
   };
   for (int v = 0; v < 6; ++v) {
     EXPECT_NEAR(moved[v].x() - kRest[v].x(), by_hand[v], 1e-12) << v;
@@ -46,7 +46,7 @@ TEST(PushField, DefaultMeetsTheToolAndMovesHardTissueLess) {
   const std::vector<Vec3> moved = pushed(options, Vec3(0, 0, -0.004));
   EXPECT_EQ(moved[0], Vec3(0, 0, -0.004));
   EXPECT_NEAR(moved[1].z(), -0.004 * (2.0 / 3.0) * 0.5, 1e-15);  // ρ = 100 against ρ_ref = 50
-  EXPECT_NEAR(moved[2].z(), -0.004 * 0.5, 1e-15);                // softer than ρ_ref: no more than 1
+  EXPECT_NEAR(moved[2].z(), -0.004 * 0.5, 1e-15);  // softer than ρ_ref: no more than 1
 }
 
 TEST(PushField, TheReferenceIsTheMedianWithinReach) {

@@ -57,15 +57,20 @@ TEST(SceneFile, SaysLineAndKeyOfWhatItRefuses) {
       {"range: 0", "E_PARAM: scene: line 2, range: 0 is not between 0 and 10"},
       {"range: .nan", "E_PARAM: scene: line 2, range: .nan is not"},
       {"range: wide", "E_PARAM: scene: line 2, range: 'wide' is not a number"},
-      {"effects: [gravity]", "E_SCENE: scene: line 2, effects[0]: 'gravity' is not an effect of model"},
+      {"effects: [gravity]",
+       "E_SCENE: scene: line 2, effects[0]: 'gravity' is not an effect of model"},
       {"effects: [recovery, recovery]", "E_SCENE: scene: line 2, effects[1]: names recovery twice"},
-      {"effects: [{recovery: {speed: 1}}]", "E_SCENE: scene: line 2, speed: is not a key of recovery"},
-      {"tools: [{name: a}, {name: b}]", "E_SCENE: scene: line 2, tools: model closed_form moves under"},
-      {"tools: [{name: a, mode: cut}]", "E_SCENE: scene: line 2, mode: 'cut' is not press or grasp"},
+      {"effects: [{recovery: {speed: 1}}]",
+       "E_SCENE: scene: line 2, speed: is not a key of recovery"},
+      {"tools: [{name: a}, {name: b}]",
+       "E_SCENE: scene: line 2, tools: model closed_form moves under"},
+      {"tools: [{name: a, mode: cut}]",
+       "E_SCENE: scene: line 2, mode: 'cut' is not press or grasp"},
       {"anchors: [{wall: 1}]", "E_SCENE: scene: line 2, wall: is not a key of anchors[0]"},
       {"probes: {p: [1, 2]}", "E_SCENE: scene: line 2, p: is not a place"},
       {"solver: {tolerance: 2}", "E_PARAM: scene: line 2, tolerance: 2 is not between 0 and 1"},
-      {"material: {young: [[0, 1e3], [9, 2e3]]}", "E_SCENE: scene: line 2, young: has several rows"},
+      {"material: {young: [[0, 1e3], [9, 2e3]]}",
+       "E_SCENE: scene: line 2, young: has several rows"},
   };
   for (const Refused& refused : cases) {
     const std::string text =
@@ -80,12 +85,12 @@ TEST(SceneFile, SaysLineAndKeyOfWhatItRefuses) {
 }
 
 TEST(SceneFile, M4_RefusesMaterialsThatCannotBe) {
-  for (const std::string bad : {"poisson: 0.5", "poisson: -1", "poisson: .nan", "poisson: .inf",
-                                "young: [[0, 0]]", "young: [[0, -5]]", "young: [[0, .nan]]",
-                                "young: [[9, 1], [3, 1]]", "mass_density: 0"}) {
+  for (const std::string bad :
+       {"poisson: 0.5", "poisson: -1", "poisson: .nan", "poisson: .inf", "young: [[0, 0]]",
+        "young: [[0, -5]]", "young: [[0, .nan]]", "young: [[9, 1], [3, 1]]", "mass_density: 0"}) {
     const std::string key = bad.substr(0, bad.find(':'));
-    const std::string text = tissue_test::refusal(
-        [&] { parse_scene("model: closed_form\nmaterial: {" + bad + "}"); });
+    const std::string text =
+        tissue_test::refusal([&] { parse_scene("model: closed_form\nmaterial: {" + bad + "}"); });
     EXPECT_EQ(text.substr(0, 7), "E_PARAM") << bad << ": " << text;
     EXPECT_NE(text.find(key), std::string::npos) << text;
   }

@@ -18,7 +18,8 @@ using tissue_test::refusal;
 // A soft ball of 24 mm radius with a hard core, fine outside and coarse inside.
 std::shared_ptr<const Body> ball_body(double spacing) {
   const auto volume = tissue_test::byte_volume(64, [](double x, double y, double z) {
-    const double d = std::sqrt(std::pow(x - 31.5, 2) + std::pow(y - 31.5, 2) + std::pow(z - 31.5, 2));
+    const double d =
+        std::sqrt(std::pow(x - 31.5, 2) + std::pow(y - 31.5, 2) + std::pow(z - 31.5, 2));
     return d < 9.0 ? 255.0 : d < 24.5 ? 60.0 + 2.0 * (24.5 - d) : 0.0;
   });
   MeshOptions options;
@@ -200,8 +201,8 @@ TEST(FoldGuard, T1_NoTetFoldsInAHundredThousandPushesAndOneDoesJustBeyondTheLimi
   for (int grasp = 0; grasp < 500; ++grasp) {
     for (float& value : body.densities) value = density(random);
     const auto& triangle = body.surface[random() % body.surface.size()];
-    const PushField<float> field =
-        push_field<float>(body.rest, body.densities, triangle[0], {range(random), true, 0.0, false});
+    const PushField<float> field = push_field<float>(body.rest, body.densities, triangle[0],
+                                                     {range(random), true, 0.0, false});
     const FoldGuard guard(body, field);
     for (int push = 0; push < 200; ++push) {
       const Vec3 n = Vec3(component(random), component(random), component(random)).normalized();

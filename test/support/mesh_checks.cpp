@@ -34,8 +34,7 @@ Triangle sorted(Triangle triangle) {
 }
 
 Triangle rotated(Triangle triangle) {
-  std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
-              triangle.end());
+  std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
   return triangle;
 }
 
@@ -107,8 +106,7 @@ MeshFindings inspect(const TetMesh& mesh) {
   }
   findings.unused_vertices = mesh.vertices.size() - used.size();
   for (const Edge& ends : mesh.parents) {
-    findings.hanging_nodes +=
-        edges.count({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+    findings.hanging_nodes += edges.count({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
   }
   std::set<std::tuple<float, float, float>> places;
   for (const tissue::Vec3f& v : mesh.vertices) places.insert({v.x(), v.y(), v.z()});

@@ -11,8 +11,7 @@ namespace tissue_test {
 namespace {
 
 template <class T, class Convert>
-VolumePtr make_volume(std::uint32_t size,
-                      const std::function<double(double, double, double)>& f,
+VolumePtr make_volume(std::uint32_t size, const std::function<double(double, double, double)>& f,
                       const Convert& convert) {
   auto volume = std::make_shared<tissue::Volume>();
   volume->grid.size = {size, size, size};
@@ -53,13 +52,11 @@ std::string real_data(const std::string& name) {
 
 }  // namespace
 
-VolumePtr float_volume(std::uint32_t size,
-                       const std::function<double(double, double, double)>& f) {
+VolumePtr float_volume(std::uint32_t size, const std::function<double(double, double, double)>& f) {
   return make_volume<float>(size, f, [](double value) { return static_cast<float>(value); });
 }
 
-VolumePtr byte_volume(std::uint32_t size,
-                      const std::function<double(double, double, double)>& f) {
+VolumePtr byte_volume(std::uint32_t size, const std::function<double(double, double, double)>& f) {
   return make_volume<std::uint8_t>(size, f, [](double value) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
   });
@@ -68,42 +65,63 @@ VolumePtr byte_volume(std::uint32_t size,
 std::vector<Shape> synthetic_shapes() {
   const double c = 31.5;
   return {
-      {"ball", float_volume(64, [c](double x, double y, double z) {
-         return 100.0 + 4.0 * (24.3 - norm(x - c, y - c, z - c));
-       }), 100.0},
-      {"torus", float_volume(64, [c](double x, double y, double z) {
-         const double ring = std::hypot(x - c, y - c) - 17.2;
-         return 100.0 + 4.0 * (9.4 - std::hypot(ring, z - c));
-       }), 100.0},
-      {"sheet", float_volume(64, [c](double x, double y, double z) {
-         const double thin = 2.6 - std::abs(z - c - 0.2 * (x - c));
-         return 100.0 + 10.0 * std::min(thin, 25.0 - std::hypot(x - c, y - c));
-       }), 100.0},
-      {"touching_balls", float_volume(64, [c](double x, double y, double z) {
-         const double left = 12.4 - norm(x - c + 12.4, y - c, z - c);
-         const double right = 12.4 - norm(x - c - 12.4, y - c, z - c);
-         return 100.0 + 4.0 * std::max(left, right);
-       }), 100.0},
-      {"blob", byte_volume(64, [c](double x, double y, double z) {
-         return 100.0 + 4.0 * (20.0 - norm(x - c, y - c, z - c)) +
-                90.0 * noise(x / 9.0, y / 9.0, z / 9.0);
-       }), 100.0},
+      {"ball",
+       float_volume(64, [c](double x, double y,
+                            double z) { return 100.0 + 4.0 * (24.3 - norm(x - c, y - c, z - c)); }),
+       100.0},
+      {"torus",
+       float_volume(64,
+                    [c](double x, double y, double z) {
+                      const double ring = std::hypot(x - c, y - c) - 17.2;
+                      return 100.0 + 4.0 * (9.4 - std::hypot(ring, z - c));
+                    }),
+       100.0},
+      {"sheet",
+       float_volume(64,
+                    [c](double x, double y, double z) {
+                      const double thin = 2.6 - std::abs(z - c - 0.2 * (x - c));
+                      return 100.0 + 10.0 * std::min(thin, 25.0 - std::hypot(x - c, y - c));
+                    }),
+       100.0},
+      {"touching_balls",
+       float_volume(64,
+                    [c](double x, double y, double z) {
+                      const double left = 12.4 - norm(x - c + 12.4, y - c, z - c);
+                      const double right = 12.4 - norm(x - c - 12.4, y - c, z - c);
+                      return 100.0 + 4.0 * std::max(left, right);
+                    }),
+       100.0},
+      {"blob",
+       byte_volume(64,
+                   [c](double x, double y, double z) {
+                     return 100.0 + 4.0 * (20.0 - norm(x - c, y - c, z - c)) +
+                            90.0 * noise(x / 9.0, y / 9.0, z / 9.0);
+                   }),
+       100.0},
       // Its faces lie on planes of lattice points at a spacing of 4 mm.
-      {"cube", float_volume(64, [c](double x, double y, double z) {
-         const double reach = std::max({std::abs(x - c), std::abs(y - c), std::abs(z - c)});
-         return 100.0 + 5.0 * (20.0 - reach);
-       }), 100.0},
+      {"cube",
+       float_volume(
+           64,
+           [c](double x, double y, double z) {
+             const double reach = std::max({std::abs(x - c), std::abs(y - c), std::abs(z - c)});
+             return 100.0 + 5.0 * (20.0 - reach);
+           }),
+       100.0},
       // Blocks of three values, the middle one the iso value itself.
-      {"ties", byte_volume(64, [c](double x, double y, double z) {
-         const double depth = 22.0 - norm(x - c, y - c, z - c);
-         return depth > 3.0 ? 140.0 : depth > 0.0 ? 100.0 : 60.0;
-       }), 100.0},
+      {"ties",
+       byte_volume(64,
+                   [c](double x, double y, double z) {
+                     const double depth = 22.0 - norm(x - c, y - c, z - c);
+                     return depth > 3.0 ? 140.0 : depth > 0.0 ? 100.0 : 60.0;
+                   }),
+       100.0},
   };
 }
 
 std::vector<Shape> real_volumes() {
   std::vector<Shape> shapes = {{"ch2bet", shipped_brain(), 20.0}};
-  for (const std::string name : {"seg3d_mr_brain.nii.gz", "invesalius_brain_u8_tumour_r10.nii.gz"}) {
+  for (const std::string name :
+       {"seg3d_mr_brain.nii.gz", "invesalius_brain_u8_tumour_r10.nii.gz"}) {
     if (!std::ifstream(real_data(name))) continue;
     shapes.push_back(
         {name, std::make_shared<tissue::Volume>(tissue::read_volume(real_data(name))), 40.0});

@@ -39,8 +39,9 @@ nlohmann::json read_json(const std::string& path) {
 TEST(MeshVolume, WritesAMeshAndItsFigures) {
   const std::string vtu = temporary("tissue_mesh_volume.vtu"),
                     json = temporary("tissue_mesh_volume.json");
-  const Outcome outcome = run(kBrain + " --iso 20 --spacing 0.012 --tumour 0,-0.02,0.01,0.012,255 -o " +
-                              vtu + " --stats " + json);
+  const Outcome outcome =
+      run(kBrain + " --iso 20 --spacing 0.012 --tumour 0,-0.02,0.01,0.012,255 -o " + vtu +
+          " --stats " + json);
   ASSERT_EQ(outcome.code, 0) << outcome.output;
   const nlohmann::json stats = read_json(json);
   std::uint64_t wished = 0, initial = 0;

@@ -11,8 +11,8 @@
 namespace tissue {
 
 /// Where the voxels lie. A point has an index (voxel units), a place in the grid's own frame
-/// (index · spacing [m], axes along the grid) and a place in the world (origin + axes · grid place).
-/// Meshing works in the grid's frame.
+/// (index · spacing [m], axes along the grid) and a place in the world (origin + axes · grid
+/// place). Meshing works in the grid's frame.
 struct Grid {
   /// Voxels along each axis.
   GridSize size = {0, 0, 0};

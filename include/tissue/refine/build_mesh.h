@@ -35,8 +35,8 @@ struct MeshOptions {
 /// A mesh, and for the uniform stage what levels came from.
 struct BuiltMesh {
   TetMesh mesh;
-  /// With `lattice_only`: T_i of each tet (after smoothing), the level of Eq. 6, and the level after
-  /// raising (the mesh's own levels are these).
+  /// With `lattice_only`: T_i of each tet (after smoothing), the level of Eq. 6, and the level
+  /// after raising (the mesh's own levels are these).
   std::vector<double> lattice_densities;
   std::vector<std::uint8_t> level_wishes;
 };

@@ -56,8 +56,7 @@ PushField<Scalar> push_field(const std::vector<Eigen::Matrix<Scalar, 3, 1>>& res
   }
   if (options.literal) {
     for (std::size_t i = 0; i < field.vertices.size(); ++i) {
-      const Scalar density =
-          options.density_response ? densities[field.vertices[i]] : Scalar(0.5);
+      const Scalar density = options.density_response ? densities[field.vertices[i]] : Scalar(0.5);
       field.weights[i] /= 2 * density;
     }
   } else if (options.density_response) {

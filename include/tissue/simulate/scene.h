@@ -64,9 +64,9 @@ class Scene {
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Advances by `dt` seconds to the tool's pose; without a pose the tool is lost. Throws InputError
-  /// E_DT unless 0 <= dt is finite and E_NONFINITE for a position that is not; the state is then as
-  /// before.
+  /// Advances by `dt` seconds to the tool's pose; without a pose the tool is lost. Throws
+  /// InputError E_DT unless 0 <= dt is finite and E_NONFINITE for a position that is not; the state
+  /// is then as before.
   StepReport step(const std::optional<ToolPose>& tool, double dt);
   /// Back to rest at once.
   void reset();

@@ -20,9 +20,9 @@ void require_indices(const std::string& field, const std::vector<Index>& indices
   for (std::size_t i = 0; i < indices.size(); ++i) {
     for (const std::uint32_t vertex : indices[i]) {
       if (vertex < vertex_count) continue;
-      throw InputError(ErrorCode::kSizeMismatch,
-                       "mesh: " + field + "[" + std::to_string(i) + "] names vertex " +
-                           std::to_string(vertex) + " of " + std::to_string(vertex_count));
+      throw InputError(ErrorCode::kSizeMismatch, "mesh: " + field + "[" + std::to_string(i) +
+                                                     "] names vertex " + std::to_string(vertex) +
+                                                     " of " + std::to_string(vertex_count));
     }
   }
 }

@@ -14,8 +14,7 @@ void count(void* block) {
   const std::size_t bytes = malloc_usable_size(block);
   const std::size_t now = counters.now.fetch_add(bytes, std::memory_order_relaxed) + bytes;
   std::size_t peak = counters.peak.load(std::memory_order_relaxed);
-  while (now > peak &&
-         !counters.peak.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {
+  while (now > peak && !counters.peak.compare_exchange_weak(peak, now, std::memory_order_relaxed)) {
   }
 }
 

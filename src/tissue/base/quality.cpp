@@ -28,8 +28,7 @@ DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const 
 
 double shape_score(const DihedralRange& range) {
   constexpr double degree = 3.14159265358979323846 / 180.0;
-  return std::min(range.min_angle() / (10.0 * degree),
-                  (180.0 - range.max_angle() / degree) / 15.0);
+  return std::min(range.min_angle() / (10.0 * degree), (180.0 - range.max_angle() / degree) / 15.0);
 }
 
 }  // namespace tissue

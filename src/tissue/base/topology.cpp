@@ -60,9 +60,9 @@ FaceTopology face_topology(const std::vector<Tet>& tets, std::size_t vertex_coun
         ++ends[key[0]];
       } else if (topology.face_tets[entries[entry].face][1] != kNoTet) {
         throw InputError(ErrorCode::kConformity,
-                         "face_topology: tet " + std::to_string(t) +
-                             " is the third at face " + std::to_string(key[0]) + " " +
-                             std::to_string(key[1]) + " " + std::to_string(key[2]));
+                         "face_topology: tet " + std::to_string(t) + " is the third at face " +
+                             std::to_string(key[0]) + " " + std::to_string(key[1]) + " " +
+                             std::to_string(key[2]));
       } else {
         topology.face_tets[entries[entry].face][1] = static_cast<std::uint32_t>(t);
       }

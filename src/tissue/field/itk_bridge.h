@@ -19,8 +19,8 @@ struct ImageFile {
   Voxels voxels;
 };
 
-/// Voxels keep the file's type, or get the next that holds all its values. Throws InputError E_FILE,
-/// E_ENCODING, E_DIMS.
+/// Voxels keep the file's type, or get the next that holds all its values. Throws InputError
+/// E_FILE, E_ENCODING, E_DIMS.
 ImageFile read_image(const std::string& path);
 
 /// Binary opening by a ball of `radius` voxels.

@@ -44,8 +44,8 @@ double distance_to_surface(const Function& f, const Vec3& place, double step, do
   for (int direction = 0; direction < 27; ++direction) {
     const Vec3 step_to(direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1);
     if (step_to.isZero()) continue;
-    nearest = std::min(nearest, crossing(f, place, f_place, step_to.normalized(), 0.5 * step,
-                                         reach));
+    nearest =
+        std::min(nearest, crossing(f, place, f_place, step_to.normalized(), 0.5 * step, reach));
   }
   return std::min(nearest, reach);
 }

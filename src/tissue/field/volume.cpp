@@ -72,10 +72,10 @@ void require_finite(const std::vector<T>& values) {
 template <class T>
 Voxels decoded(const RawVolume& raw, std::size_t count) {
   if (raw.data_size / sizeof(T) != count || raw.data_size % sizeof(T) != 0) {
-    throw InputError(ErrorCode::kSizeMismatch,
-                     "volume: data has " + std::to_string(raw.data_size) + " bytes, but " +
-                         std::to_string(count) + " voxels of " + raw.encoding + " need " +
-                         std::to_string(count * sizeof(T)));
+    throw InputError(ErrorCode::kSizeMismatch, "volume: data has " + std::to_string(raw.data_size) +
+                                                   " bytes, but " + std::to_string(count) +
+                                                   " voxels of " + raw.encoding + " need " +
+                                                   std::to_string(count * sizeof(T)));
   }
   std::vector<T> values(count);
   std::memcpy(values.data(), raw.data, raw.data_size);
@@ -124,8 +124,8 @@ void check_header(const Volume& volume) {
   }
   if (!std::isfinite(volume.slope) || volume.slope == 0.0 || !std::isfinite(volume.intercept)) {
     throw InputError(ErrorCode::kParam, "volume: rescale_slope " + to_text(volume.slope) +
-                                            " or rescale_intercept " +
-                                            to_text(volume.intercept) + " is not a finite scale");
+                                            " or rescale_intercept " + to_text(volume.intercept) +
+                                            " is not a finite scale");
   }
   require_frame(volume.frame_id);
 }
@@ -139,9 +139,9 @@ void check_values(const Volume& volume) {
       volume.voxels);
   const std::array<double, 2> range = value_range(volume);
   if (!std::isfinite(range[0]) || !std::isfinite(range[1])) {
-    throw InputError(ErrorCode::kNonfinite,
-                     "volume: values overflow after rescale_slope " + to_text(volume.slope) +
-                         " and rescale_intercept " + to_text(volume.intercept));
+    throw InputError(ErrorCode::kNonfinite, "volume: values overflow after rescale_slope " +
+                                                to_text(volume.slope) + " and rescale_intercept " +
+                                                to_text(volume.intercept));
   }
 }
 

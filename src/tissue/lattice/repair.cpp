@@ -48,8 +48,7 @@ bool keep_largest_component(LatticeMesh& mesh) {
 struct BoundaryCorner {
   std::uint32_t vertex, other, triangle;
   bool operator<(const BoundaryCorner& right) const {
-    return std::tie(vertex, other, triangle) <
-           std::tie(right.vertex, right.other, right.triangle);
+    return std::tie(vertex, other, triangle) < std::tie(right.vertex, right.other, right.triangle);
   }
 };
 

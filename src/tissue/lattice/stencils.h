@@ -6,8 +6,8 @@
 
 namespace tissue {
 
-/// A corner of a tet, or the cut on one of its edges: corner i is i, the cut between corners i and j
-/// is 4 + tet_edge(i, j).
+/// A corner of a tet, or the cut on one of its edges: corner i is i, the cut between corners i and
+/// j is 4 + tet_edge(i, j).
 using StencilPoint = int;
 
 /// The tets with which a lattice tet is filled.
@@ -18,7 +18,6 @@ struct Stencil {
 
 /// `signs` is −1, 0 or 1 at each corner; `corners` are the doubled lattice coordinates of the
 /// corners, which decide how quads are split. Tets may come out with negative volume.
-Stencil fill_tet(const std::array<int, 4>& signs,
-                 const std::array<std::array<int, 3>, 4>& corners);
+Stencil fill_tet(const std::array<int, 4>& signs, const std::array<std::array<int, 3>, 4>& corners);
 
 }  // namespace tissue

@@ -12,8 +12,8 @@
 namespace tissue {
 namespace {
 
-// A cut point that is nearer to an end of its edge than this fraction of the edge's length pulls the
-// end onto the surface. The pair keeps dihedral angles within 10.76° and 164.70° (Labelle and
+// A cut point that is nearer to an end of its edge than this fraction of the edge's length pulls
+// the end onto the surface. The pair keeps dihedral angles within 10.76° and 164.70° (Labelle and
 // Shewchuk 2007, the bound of their abstract).
 constexpr double kAlphaLong = 0.285;
 constexpr double kAlphaShort = 0.399;
@@ -69,10 +69,9 @@ BccLattice lattice_around(const Grid& grid, const StuffingOptions& options) {
     points *= size[axis];
   }
   if (!(points <= options.max_points)) {
-    throw InputError(ErrorCode::kTooManyTets, "spacing: " + to_text(options.spacing) +
-                                                  " m needs a lattice of " + to_text(points) +
-                                                  " points, the limit is " +
-                                                  to_text(options.max_points));
+    throw InputError(ErrorCode::kTooManyTets,
+                     "spacing: " + to_text(options.spacing) + " m needs a lattice of " +
+                         to_text(points) + " points, the limit is " + to_text(options.max_points));
   }
   for (int axis = 0; axis < 3; ++axis) lattice.size[axis] = static_cast<std::int64_t>(size[axis]);
   return lattice;
@@ -118,10 +117,10 @@ CutLattice cut_lattice(const Function& f, const BccLattice& lattice) {
     for (int d = 0; d < BccLattice::kDirections; ++d) {
       const std::int64_t end = point + result.offsets[point & 1][d];
       if (result.signs[point] * result.signs[end] >= 0) continue;
-      const double t = bracketed_root(f, lattice.place(point), lattice.place(end), values[point],
-                                      values[end]);
-      result.cut_directions[point] = static_cast<std::uint8_t>(result.cut_directions[point] |
-                                                               (1u << d));
+      const double t =
+          bracketed_root(f, lattice.place(point), lattice.place(end), values[point], values[end]);
+      result.cut_directions[point] =
+          static_cast<std::uint8_t>(result.cut_directions[point] | (1u << d));
       result.cuts.push_back({point, d, t});
     }
   });
@@ -253,22 +252,21 @@ double spacing_that_would_do(const Grid& grid, double spacing) {
 
 LatticeMesh stuff(const ImplicitSurface& surface, const StuffingOptions& options) {
   if (!(options.spacing > 0.0 && std::isfinite(options.spacing))) {
-    throw InputError(ErrorCode::kParam, "spacing: " + to_text(options.spacing) +
-                                            " m is not positive");
+    throw InputError(ErrorCode::kParam,
+                     "spacing: " + to_text(options.spacing) + " m is not positive");
   }
   const BccLattice lattice = lattice_around(surface.field->grid, options);
-  CutLattice cut = with_implicit_function(
-      surface, [&](const auto& f) { return cut_lattice(f, lattice); });
+  CutLattice cut =
+      with_implicit_function(surface, [&](const auto& f) { return cut_lattice(f, lattice); });
   warp(cut);
   LatticeMesh mesh = Filler(cut).fill();
   mesh.border_touched = cut.border_touched;
   repair(mesh, options.all_components);
   if (mesh.tets.empty()) {
-    throw InputError(ErrorCode::kTooSmall,
-                     "spacing: at " + to_text(options.spacing) +
-                         " m the organ slips through the lattice; " +
-                         to_text(spacing_that_would_do(surface.field->grid, options.spacing)) +
-                         " m would do");
+    throw InputError(
+        ErrorCode::kTooSmall,
+        "spacing: at " + to_text(options.spacing) + " m the organ slips through the lattice; " +
+            to_text(spacing_that_would_do(surface.field->grid, options.spacing)) + " m would do");
   }
   return mesh;
 }

@@ -130,8 +130,8 @@ SplitPattern pattern_of(const TemplateKey& key, const std::array<int, 6>& ranks,
       const int a = kTetFaces[face][(corner + 1) % 3], b = kTetFaces[face][(corner + 2) % 3];
       const auto halved = [&](int i, int j) { return (pattern.marks >> tet_edge(i, j) & 1u) != 0; };
       if (!halved(z, a) || !halved(z, b) || halved(a, b)) continue;
-      const bool a_first = ranks[lattice_direction(part[z], part[a])] <
-                           ranks[lattice_direction(part[z], part[b])];
+      const bool a_first =
+          ranks[lattice_direction(part[z], part[a])] < ranks[lattice_direction(part[z], part[b])];
       pattern.diagonal_start[face] = a_first ? a : b;
     }
   }

@@ -19,8 +19,8 @@ struct TemplateKey {
   unsigned finer_edges = 0;
   /// Bit f: the lattice face f has one level more than the tet.
   unsigned finer_faces = 0;
-  /// Bit 3f + c: of the two edges of face f at its corner c, the one to the lower other corner comes
-  /// first in the order of edges. Set only where the comparison decides a diagonal.
+  /// Bit 3f + c: of the two edges of face f at its corner c, the one to the lower other corner
+  /// comes first in the order of edges. Set only where the comparison decides a diagonal.
   unsigned first_edges = 0;
 
   std::uint32_t packed() const {

@@ -53,15 +53,14 @@ void check(const MeshOptions& options) {
   if (options.window) {
     const auto& [low, high] = *options.window;
     if (!std::isfinite(low) || !std::isfinite(high) || !(high > low)) {
-      refuse(ErrorCode::kParam, "window: " + to_text(low) + " to " + to_text(high) +
-                                    " is not a finite, rising range");
+      refuse(ErrorCode::kParam,
+             "window: " + to_text(low) + " to " + to_text(high) + " is not a finite, rising range");
     }
   }
 }
 
 ImplicitSurface surface_for(const std::shared_ptr<const Volume>& volume,
-                            const std::shared_ptr<const Volume>& mask,
-                            const MeshOptions& options) {
+                            const std::shared_ptr<const Volume>& mask, const MeshOptions& options) {
   if (mask == nullptr) return surface_at_iso(volume, options.iso_value);
   if (!same_grid(volume->grid, mask->grid)) {
     refuse(ErrorCode::kSizeMismatch, "mask: its grid of " + std::to_string(mask->grid.size[0]) +
@@ -72,8 +71,9 @@ ImplicitSurface surface_for(const std::shared_ptr<const Volume>& volume,
   return surface_of_mask(mask);
 }
 
-// The lattice at the spacing asked for, or at the spacing that comes within 2 % of the wished number
-// of tets: the number falls with the cube of the spacing, so a few rounds of that rule suffice.
+// The lattice at the spacing asked for, or at the spacing that comes within 2 % of the wished
+// number of tets: the number falls with the cube of the spacing, so a few rounds of that rule
+// suffice.
 LatticeMesh stuffed(const ImplicitSurface& surface, const MeshOptions& options) {
   StuffingOptions stuffing;
   stuffing.all_components = options.all_components;
@@ -108,8 +108,7 @@ std::vector<float> sampled_densities(const Volume& volume, const DensityWindow& 
   with_sampler(volume, [&](const auto& value) {
     parallel_ranges(places.size() - begin, threads, [&](std::size_t from, std::size_t to) {
       for (std::size_t i = begin + from; i < begin + to; ++i) {
-        densities[i] =
-            static_cast<float>(window.density(value(places[i].template cast<double>())));
+        densities[i] = static_cast<float>(window.density(value(places[i].template cast<double>())));
       }
     });
   });
@@ -130,8 +129,8 @@ std::vector<float> sampled_tet_densities(const Volume& volume, const DensityWind
         const auto corner = [&](int i) -> Vec3 {
           return mesh.vertices[mesh.tets[t][i]].cast<double>();
         };
-        densities[t] = static_cast<float>(sampling[mesh.levels[t]].mean(
-            corner(0), corner(1), corner(2), corner(3), density));
+        densities[t] = static_cast<float>(
+            sampling[mesh.levels[t]].mean(corner(0), corner(1), corner(2), corner(3), density));
       }
     });
   });
@@ -205,8 +204,7 @@ BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,
   const DensityWindow window = window_for(*volume, surface, options);
   RefinableLattice lattice = refinable(std::move(stuffed_mesh));
   const std::vector<Vec3>& places = lattice.mesh.vertices;
-  std::vector<float> densities =
-      sampled_densities(*volume, window, places, 0, {}, options.threads);
+  std::vector<float> densities = sampled_densities(*volume, window, places, 0, {}, options.threads);
   std::vector<double> tet_density =
       smoothed(tet_means(lattice.mesh.tets, densities), lattice.mesh.tets, places.size(),
                options.levels.smooth_levels);
@@ -218,11 +216,11 @@ BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,
   raise_levels(levels, lattice.edges.tet_edges, lattice.edges.edges.size());
   const std::uint64_t predicted = predicted_tets(levels);
   if (predicted > options.max_tetrahedra) {
-    refuse(ErrorCode::kTooManyTets,
-           "level_sections: " + std::to_string(options.levels.sections) + " on " +
-               std::to_string(levels.size()) + " initial tets would make " +
-               std::to_string(predicted) + " tets or more, the limit is " +
-               std::to_string(options.max_tetrahedra));
+    refuse(ErrorCode::kTooManyTets, "level_sections: " + std::to_string(options.levels.sections) +
+                                        " on " + std::to_string(levels.size()) +
+                                        " initial tets would make " + std::to_string(predicted) +
+                                        " tets or more, the limit is " +
+                                        std::to_string(options.max_tetrahedra));
   }
 
   clock.start("refinement");
@@ -246,10 +244,10 @@ BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,
   clock.start("densities");
   mesh.densities = sampled_densities(*volume, window, mesh.vertices, places.size(),
                                      std::move(densities), options.threads);
-  mesh.tet_densities = sampled_tet_densities(*volume, window, mesh, lattice.mesh.spacing,
-                                             options.threads);
-  statistics.surface_error = surface_distance(surface, mesh.vertices, mesh.surface,
-                                              lattice.mesh.spacing, options.threads);
+  mesh.tet_densities =
+      sampled_tet_densities(*volume, window, mesh, lattice.mesh.spacing, options.threads);
+  statistics.surface_error =
+      surface_distance(surface, mesh.vertices, mesh.surface, lattice.mesh.spacing, options.threads);
   for (Vec3f& vertex : mesh.vertices) {
     vertex = volume->grid.to_world(vertex.cast<double>()).cast<float>();
   }
@@ -259,10 +257,9 @@ BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,
 
   statistics.tetrahedra = mesh.tets.size();
   statistics.vertices = mesh.vertices.size();
-  statistics.closure = options.lattice_only
-                           ? 0
-                           : static_cast<std::int64_t>(statistics.tetrahedra) -
-                                 static_cast<std::int64_t>(predicted_tets(wishes));
+  statistics.closure = options.lattice_only ? 0
+                                            : static_cast<std::int64_t>(statistics.tetrahedra) -
+                                                  static_cast<std::int64_t>(predicted_tets(wishes));
   statistics.dihedral = {dihedral.min_angle(), dihedral.max_angle()};
   statistics.volume = volume_of(mesh);
   statistics.stages = clock.stages();

@@ -45,8 +45,8 @@ std::vector<double> smoothed(std::vector<double> values, const std::vector<Tet>&
 std::vector<std::uint32_t> density_thresholds(const std::vector<double>& densities,
                                               const LevelOptions& options) {
   if (options.sections < 1) {
-    throw InputError(ErrorCode::kN, "level_sections: " + std::to_string(options.sections) +
-                                        " is below 1");
+    throw InputError(ErrorCode::kN,
+                     "level_sections: " + std::to_string(options.sections) + " is below 1");
   }
   const auto highest = static_cast<std::size_t>(std::floor(options.d_max));
   std::vector<std::uint64_t> counts(highest + 1, 0);

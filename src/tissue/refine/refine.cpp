@@ -121,8 +121,8 @@ class FaceTables {
     return table;
   }
   void prepare(std::uint32_t parts) {
-    for (const auto& ranks : {std::array<int, 3>{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0},
-                              {2, 0, 1}, {2, 1, 0}}) {
+    for (const auto& ranks :
+         {std::array<int, 3>{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}) {
       table(parts, ranks);
     }
   }
@@ -201,9 +201,9 @@ class Filler {
         before[(even + 2) % 3] += step;
         after[(even + 1) % 3] += step;
         after[(even + 2) % 3] -= step;
-        const Vec3 place = (double(w[0]) * places[0] + double(w[1]) * places[1] +
-                            double(w[2]) * places[2]) /
-                           double(parts);
+        const Vec3 place =
+            (double(w[0]) * places[0] + double(w[1]) * places[1] + double(w[2]) * places[2]) /
+            double(parts);
         set_vertex(number(w), place, number(before), number(after));
       }
     }
@@ -231,8 +231,7 @@ class Filler {
     for (int f = 0; f < 4; ++f) {
       if (lattice_.faces.face_tets[lattice_.faces.tet_faces[t][f]][1] != kNoTet) continue;
       for (const auto& local : filled.face_triangles[f]) {
-        mesh_.surface[next_triangle++] = {numbers[local[0]], numbers[local[1]],
-                                          numbers[local[2]]};
+        mesh_.surface[next_triangle++] = {numbers[local[0]], numbers[local[1]], numbers[local[2]]};
       }
     }
   }

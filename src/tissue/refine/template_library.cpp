@@ -167,9 +167,7 @@ TemplateLibrary::Entry& TemplateLibrary::entry(const TemplateKey& key) {
   return entry;
 }
 
-const Blueprint& TemplateLibrary::blueprint(const TemplateKey& key) {
-  return entry(key).blueprint;
-}
+const Blueprint& TemplateLibrary::blueprint(const TemplateKey& key) { return entry(key).blueprint; }
 
 const Fit& TemplateLibrary::whole_fit(const TemplateKey& key) {
   Entry& here = entry(key);

@@ -18,8 +18,7 @@ class Stopwatch {
  public:
   explicit Stopwatch(double& seconds) : seconds_(seconds) {}
   ~Stopwatch() {
-    seconds_ +=
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
@@ -55,7 +54,8 @@ class Scene::Implementation {
     if (phase_ == Phase::kHeld && must_release(tool)) release();
     if (phase_ == Phase::kRecovering) recover(dt);
     // A tool whose jaw was closed all along does not take hold of what it passes.
-    const bool may_take = tool && tool->closed && (!scene_.tool.grasps || !was_closed_ || !had_tool_);
+    const bool may_take =
+        tool && tool->closed && (!scene_.tool.grasps || !was_closed_ || !had_tool_);
     if (phase_ == Phase::kRest && may_take) take(*tool);
     if (phase_ == Phase::kHeld) report.clamped = follow(*tool, dt);
     had_tool_ = tool.has_value();

@@ -62,8 +62,8 @@ void check_solver(const YamlReader& solver) {
 ToolDescription tool_from(const YamlReader& tools) {
   const std::vector<YamlReader> entries = tools.entries();
   if (entries.size() != 1) {
-    tools.refuse(ErrorCode::kScene, "model closed_form moves under one tool, not " +
-                                        std::to_string(entries.size()));
+    tools.refuse(ErrorCode::kScene,
+                 "model closed_form moves under one tool, not " + std::to_string(entries.size()));
   }
   const YamlReader& entry = entries[0];
   entry.require_keys({"name", "shape", "mode"});

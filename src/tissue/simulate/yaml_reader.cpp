@@ -63,8 +63,8 @@ double YamlReader::number(double lowest, double highest, bool open) const {
   } catch (const YAML::Exception&) {
     refuse(ErrorCode::kParam, "'" + text + "' is not a number");
   }
-  const bool inside = open ? value > lowest && value < highest
-                           : value >= lowest && value <= highest;
+  const bool inside =
+      open ? value > lowest && value < highest : value >= lowest && value <= highest;
   if (!std::isfinite(value) || !inside) {
     refuse(ErrorCode::kParam, text + " is not " + (open ? "between " : "within ") +
                                   to_text(lowest) + (open ? " and " : " to ") + to_text(highest));

@@ -1,0 +1,211 @@
+#include "ros/deformer_node.h"
+
+#include "ros/convert.h"
+#include "ros/markers.h"
+#include "ros/pose_input.h"
+#include "tissue/simulate/scene_file.h"
+
+#include <sensor_msgs/PointCloud2.h>
+#include <soft_tissue_sim/SimulationStatus.h>
+
+#include <cmath>
+#include <limits>
+
+namespace tissue_ros {
+namespace {
+
+using tissue::ErrorCode;
+using tissue::InputError;
+
+void require_positive(const char* name, double value) {
+  if (value > 0.0 && value <= 10000.0) return;
+  throw InputError(ErrorCode::kParam, std::string("~") + name + ": " + tissue::to_text(value) +
+                                          " is not between 0 and 10000");
+}
+
+}  // namespace
+
+DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
+                           const DeformerNodeParameters& parameters)
+    : parameters_(parameters), diagnostics_(handle, private_handle) {
+  require_positive("tool_timeout", parameters.tool_timeout);
+  require_positive("cloud_rate", parameters.cloud_rate);
+  require_positive("marker_rate", parameters.marker_rate);
+  require_positive("status_rate", parameters.status_rate);
+  if (!parameters.scene.empty()) scene_ = tissue::read_scene(parameters.scene);
+
+  cloud_publisher_ = handle.advertise<sensor_msgs::PointCloud2>("deformed_cloud", 2);
+  marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("deformed_markers", 1);
+  status_publisher_ =
+      private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1, true);
+  using TetMesh = soft_tissue_sim::TetMesh;
+  mesh_subscriber_ = handle.subscribe<TetMesh>(
+      "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
+  using PoseStamped = geometry_msgs::PoseStamped;
+  pose_subscriber_ = handle.subscribe<PoseStamped>(
+      scene_.tool.name + "/measured_cp", 1,
+      [this](const PoseStamped::ConstPtr& pose) { take_pose(*pose); }, ros::VoidConstPtr(),
+      ros::TransportHints().tcpNoDelay());
+
+  const auto every = [&](double rate, void (DeformerNode::*work)()) {
+    timers_.push_back(handle.createWallTimer(
+        ros::WallDuration(1.0 / rate), [this, work](const ros::WallTimerEvent&) {
+          const Outcome outcome = guarded([&] { (this->*work)(); });
+          if (!outcome.ok()) ROS_ERROR_THROTTLE(1.0, "deformer_node: %s", outcome.sentence.c_str());
+        }));
+  };
+  every(parameters.cloud_rate, &DeformerNode::watch_tool);
+  every(parameters.cloud_rate, &DeformerNode::publish_cloud);
+  every(parameters.marker_rate, &DeformerNode::publish_markers);
+  every(parameters.status_rate, &DeformerNode::publish_status);
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("deformer", this, &DeformerNode::diagnose);
+}
+
+void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
+  const Outcome outcome = guarded([&] {
+    tissue::TetMesh mesh = from_message(message);
+    if (mesh.tets.empty()) throw InputError(ErrorCode::kMeshQuality, "mesh: it has no tets");
+    auto body = std::make_shared<const tissue::Body>(tissue::body_of(mesh));
+    std::vector<std::uint8_t> levels = vertex_levels(mesh);
+    DisplayMesh display =
+        display_mesh(mesh, section_from(parameters_.section_axis, parameters_.section_at),
+                     static_cast<std::size_t>(std::max(parameters_.marker_max_triangles, 0)));
+    tissue::Scene scene(scene_, std::move(body));
+    simulation_.emplace(
+        Simulation{std::move(mesh), std::move(levels), std::move(display), std::move(scene)});
+  });
+  if (!outcome.ok()) {
+    ++rejected_meshes_;
+    ROS_ERROR_THROTTLE(1.0, "deformer_node: mesh refused: %s: %s", tissue::name(outcome.code),
+                       outcome.sentence.c_str());
+    return;
+  }
+  tool_.reset();
+  ROS_INFO("deformer_node: took mesh %s of %zu tets", simulation_->mesh.uuid.c_str(),
+           simulation_->mesh.tets.size());
+}
+
+void DeformerNode::take_pose(const geometry_msgs::PoseStamped& pose) {
+  const Outcome outcome = guarded([&] {
+    if (!simulation_) {
+      ROS_WARN_ONCE("deformer_node: no mesh yet, poses are ignored");
+      return;
+    }
+    const std::string problem = pose_problem(pose);
+    if (!problem.empty()) {
+      drop_pose(problem);
+      return;
+    }
+    std::string why_not;
+    const auto transformed = pose_in_frame(pose, simulation_->mesh.frame_id, transforms_, why_not);
+    if (transformed) {
+      move_to(*transformed);
+    } else {
+      drop_pose(why_not);
+    }
+  });
+  if (!outcome.ok()) drop_pose(outcome.sentence);
+}
+
+void DeformerNode::move_to(const geometry_msgs::PoseStamped& pose) {
+  double dt = 0.0;
+  if (tool_) {
+    dt = (pose.header.stamp - stamp_).toSec();
+    // A bag that starts again, or a clock that was set back: the tissue starts again too.
+    if (dt < 0.0) {
+      simulation_->scene.reset();
+      time_jumped_ = true;
+      dt = 0.0;
+    }
+  }
+  const auto& p = pose.pose.position;
+  const tissue::ToolPose tool = {tissue::Vec3(p.x, p.y, p.z), true};
+  const ros::WallTime start = ros::WallTime::now();
+  last_step_ = simulation_->scene.step(tool, dt);
+  step_seconds_ = (ros::WallTime::now() - start).toSec();
+  tool_ = tool;
+  stamp_ = pose.header.stamp;
+  heard_ = ros::WallTime::now();
+}
+
+void DeformerNode::drop_pose(const std::string& why) {
+  ++dropped_poses_;
+  ROS_WARN_THROTTLE(1.0, "deformer_node: pose dropped: %s", why.c_str());
+}
+
+void DeformerNode::watch_tool() {
+  if (!simulation_) return;
+  const bool silent = tool_ && (ros::WallTime::now() - heard_).toSec() > parameters_.tool_timeout;
+  if (!silent && (tool_ || !simulation_->scene.recovering())) return;
+  // The first step without a tool lets go; the others relax.
+  last_step_ = simulation_->scene.step(std::nullopt, 1.0 / parameters_.cloud_rate);
+  tool_.reset();
+}
+
+void DeformerNode::publish_cloud() {
+  if (!simulation_ || cloud_publisher_.getNumSubscribers() == 0) return;
+  const tissue::Scene& scene = simulation_->scene;
+  auto cloud = boost::make_shared<sensor_msgs::PointCloud2>(
+      cloud_message(scene.body(), scene.state(), simulation_->vertex_levels));
+  cloud->header.frame_id = simulation_->mesh.frame_id;
+  cloud->header.stamp = stamp_.isZero() ? ros::Time::now() : stamp_;
+  cloud_publisher_.publish(cloud);
+}
+
+void DeformerNode::publish_markers() {
+  if (!simulation_ || marker_publisher_.getNumSubscribers() == 0) return;
+  const std::vector<tissue::Vec3>& positions = simulation_->scene.state().positions;
+  const std::string& frame = simulation_->mesh.frame_id;
+  auto markers = level_markers(
+      simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return positions[v]; }, frame);
+  if (tool_) markers.markers.push_back(tool_marker(tool_->position, scene_.tool.radius, frame));
+  marker_publisher_.publish(markers);
+}
+
+void DeformerNode::publish_status() {
+  diagnostics_.update();
+  if (!simulation_ || status_publisher_.getNumSubscribers() == 0) return;
+  const tissue::Scene& scene = simulation_->scene;
+  const tissue::DeformationQuality quality =
+      tissue::deformation_quality(scene.body(), scene.state());
+  soft_tissue_sim::SimulationStatus status;
+  status.header.stamp = stamp_;
+  status.header.frame_id = simulation_->mesh.frame_id;
+  status.mesh_uuid = simulation_->mesh.uuid;
+  status.scene = scene_.name;
+  status.model = scene_.model;
+  for (const tissue::EffectCost& cost : scene.effect_costs()) {
+    soft_tissue_sim::EffectCost effect;
+    effect.name = cost.name;
+    effect.seconds = cost.seconds;
+    effect.bytes = cost.bytes;
+    status.effects.push_back(effect);
+  }
+  status.step_seconds = step_seconds_;
+  status.energy = std::numeric_limits<double>::quiet_NaN();
+  status.min_det_f = quality.min_det_f;
+  status.inverted = quality.inverted;
+  status.moved_vertices = last_step_.moved_vertices;
+  status.dropped_poses = dropped_poses_;
+  status.rejected_meshes = rejected_meshes_;
+  if (last_step_.clamped) status.flags.push_back("CLAMPED");
+  if (!tool_) status.flags.push_back("TOOL_LOST");
+  if (time_jumped_) status.flags.push_back("TIME_JUMP");
+  time_jumped_ = false;
+  status_publisher_.publish(status);
+}
+
+void DeformerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (simulation_) {
+    status.summary(DiagnosticStatus::OK, "simulating");
+    status.add("mesh", simulation_->mesh.uuid);
+  } else {
+    status.summary(DiagnosticStatus::WARN, "no mesh");
+  }
+  status.add("dropped poses", dropped_poses_);
+  status.add("rejected meshes", rejected_meshes_);
+}
+
+}  // namespace tissue_ros

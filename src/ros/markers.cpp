@@ -1,0 +1,121 @@
+#include "ros/markers.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace tissue_ros {
+namespace {
+
+using visualization_msgs::Marker;
+
+std_msgs::ColorRGBA colour(float r, float g, float b) {
+  std_msgs::ColorRGBA result;
+  result.r = r;
+  result.g = g;
+  result.b = b;
+  result.a = 1.0f;
+  return result;
+}
+
+std_msgs::ColorRGBA level_colour(int level) {
+  if (level == 0) return colour(0.86f, 0.13f, 0.13f);
+  if (level == 1) return colour(0.20f, 0.70f, 0.25f);
+  if (level == 2) return colour(0.22f, 0.38f, 0.90f);
+  const float light = std::min(1.0f, 0.45f + 0.15f * static_cast<float>(level - 3));
+  return colour(light, 0.75f, 1.0f);
+}
+
+geometry_msgs::Point point(const tissue::Vec3& place) {
+  geometry_msgs::Point result;
+  result.x = place.x();
+  result.y = place.y();
+  result.z = place.z();
+  return result;
+}
+
+// Stamp 0, so that late joiners show it too.
+Marker empty_marker(const std::string& frame_id, const std::string& name, int type) {
+  Marker marker;
+  marker.header.frame_id = frame_id;
+  marker.ns = name;
+  marker.type = type;
+  marker.action = Marker::ADD;
+  marker.pose.orientation.w = 1.0;
+  marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
+  marker.color = colour(1.0f, 1.0f, 1.0f);
+  return marker;
+}
+
+}  // namespace
+
+visualization_msgs::MarkerArray level_markers(const DisplayMesh& display, const PlaceOf& place,
+                                              const std::string& frame_id) {
+  std::map<int, Marker> by_level;
+  for (const auto* faces : {&display.hull, &display.cut}) {
+    for (const DisplayMesh::Face& face : *faces) {
+      auto found = by_level.find(face.level);
+      if (found == by_level.end()) {
+        Marker marker =
+            empty_marker(frame_id, "level_" + std::to_string(face.level), Marker::TRIANGLE_LIST);
+        marker.color = level_colour(face.level);
+        found = by_level.emplace(face.level, std::move(marker)).first;
+      }
+      for (const std::uint32_t v : face.corners) found->second.points.push_back(point(place(v)));
+    }
+  }
+  Marker edges = empty_marker(frame_id, "edges", Marker::LINE_LIST);
+  edges.color = colour(0.05f, 0.05f, 0.05f);
+  edges.scale.x = 0.0002;
+  std::set<tissue::Edge> seen;
+  for (const DisplayMesh::Face& face : display.cut) {
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t a = face.corners[i], b = face.corners[(i + 1) % 3];
+      if (!seen.insert({std::min(a, b), std::max(a, b)}).second) continue;
+      edges.points.push_back(point(place(a)));
+      edges.points.push_back(point(place(b)));
+    }
+  }
+  visualization_msgs::MarkerArray array;
+  for (auto& entry : by_level) array.markers.push_back(std::move(entry.second));
+  if (!edges.points.empty()) array.markers.push_back(std::move(edges));
+  return array;
+}
+
+visualization_msgs::MarkerArray density_markers(const DisplayMesh& display,
+                                                const tissue::TetMesh& mesh) {
+  Marker marker = empty_marker(mesh.frame_id, "density", Marker::TRIANGLE_LIST);
+  const auto [low, high] = std::minmax_element(mesh.densities.begin(), mesh.densities.end());
+  const float range = std::max(*high - *low, 1e-6f);
+  for (const auto* faces : {&display.hull, &display.cut}) {
+    for (const DisplayMesh::Face& face : *faces) {
+      for (const std::uint32_t v : face.corners) {
+        const float share = (mesh.densities[v] - *low) / range;
+        marker.points.push_back(point(mesh.vertices[v].cast<double>()));
+        marker.colors.push_back(colour(share, 0.15f + 0.75f * share * share, 0.35f * (1 - share)));
+      }
+    }
+  }
+  visualization_msgs::MarkerArray array;
+  array.markers.push_back(std::move(marker));
+  return array;
+}
+
+visualization_msgs::MarkerArray replacing_all(visualization_msgs::MarkerArray array) {
+  if (array.markers.empty()) return array;
+  Marker marker = empty_marker(array.markers[0].header.frame_id, "", Marker::TRIANGLE_LIST);
+  marker.action = Marker::DELETEALL;
+  array.markers.insert(array.markers.begin(), marker);
+  return array;
+}
+
+visualization_msgs::Marker tool_marker(const tissue::Vec3& position, double radius,
+                                       const std::string& frame_id) {
+  Marker marker = empty_marker(frame_id, "tool", Marker::SPHERE);
+  marker.pose.position = point(position);
+  marker.scale.x = marker.scale.y = marker.scale.z = 2.0 * radius;
+  marker.color = colour(1.0f, 0.85f, 0.1f);
+  return marker;
+}
+
+}  // namespace tissue_ros

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "ros/parameters.h"
+#include "tissue/field/volume.h"
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <optional>
+
+namespace tissue_ros {
+
+/// What volume_node publishes.
+struct PreparedVolume {
+  tissue::Volume volume;
+  std::optional<tissue::Volume> mask;
+};
+
+/// Reads and edits as the parameters say: crop, then tumour, then mask, its opening and its
+/// smoothing. Throws tissue::InputError.
+PreparedVolume prepare_volume(const VolumeNodeParameters& parameters);
+
+/// Publishes a volume and its mask, latched. Throws tissue::InputError, E_TOO_LARGE for what no
+/// message can carry.
+class VolumeNode {
+ public:
+  VolumeNode(ros::NodeHandle handle, const VolumeNodeParameters& parameters);
+
+ private:
+  ros::Publisher volume_publisher_;
+  ros::Publisher mask_publisher_;
+};
+
+}  // namespace tissue_ros

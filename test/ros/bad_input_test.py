@@ -1,0 +1,286 @@
+#!/usr/bin/env python3
+"""Every node survives bad volumes, requests and poses, keeps what it had, and serves on."""
+import math
+import struct
+import threading
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped, TransformStamped
+from sensor_msgs import point_cloud2
+from sensor_msgs.msg import PointCloud2
+from soft_tissue_sim.msg import Result, SimulationStatus, TetMesh, Volume
+from soft_tissue_sim.srv import BuildMesh, BuildMeshRequest
+from tf2_msgs.msg import TFMessage
+
+SIZE = 32
+CENTRE = (SIZE - 1) / 2
+RADIUS = 12.0
+
+
+def ball():
+    """A ball of 12 mm, dense in the middle."""
+    volume = Volume()
+    volume.header.frame_id = "patient"
+    volume.width = volume.height = volume.depth = SIZE
+    volume.spacing.x = volume.spacing.y = volume.spacing.z = 1e-3
+    volume.origin.orientation.w = 1.0
+    volume.encoding = "8UC1"
+    volume.quantity = "density"
+    data = bytearray()
+    for z in range(SIZE):
+        for y in range(SIZE):
+            for x in range(SIZE):
+                d = math.dist((x, y, z), (CENTRE,) * 3)
+                data.append(max(0, min(255, int(100 + 10 * (RADIUS - d)))))
+    volume.data = bytes(data)
+    return volume
+
+
+def request(**fields):
+    defaults = dict(iso_value=100.0, spacing=0.006, level_sections=2)
+    return BuildMeshRequest(**{**defaults, **fields})
+
+
+def with_fields(**fields):
+    volume = ball()
+    for name, value in fields.items():
+        target = volume
+        *path, last = name.split("__")
+        for part in path:
+            target = getattr(target, part)
+        setattr(target, last, value)
+    return volume
+
+
+class BadInput(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        rospy.init_node("bad_input_test")
+        cls.volume = rospy.Publisher("volume", Volume, queue_size=1)
+        cls.pose = rospy.Publisher("tool/measured_cp", PoseStamped, queue_size=1)
+        cls.tf = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
+        cls.mesh = rospy.Publisher("mesh", TetMesh, queue_size=1)
+        cls.rejected = {}
+        rospy.Subscriber("/diagnostics", DiagnosticArray, cls.take_diagnostics)
+        cls.statuses = []
+        rospy.Subscriber("deformer_node/status", SimulationStatus, cls.statuses.append)
+        cls.build = rospy.ServiceProxy("mesher_node/build_mesh", BuildMesh)
+        cls.build.wait_for_service(30)
+        while cls.volume.get_num_connections() < 1 or cls.pose.get_num_connections() < 1:
+            rospy.rostime.wallsleep(0.05)
+
+    @classmethod
+    def take_diagnostics(cls, message):
+        for status in message.status:
+            for value in status.values:
+                if "rejected" in value.key:
+                    cls.rejected[status.name + value.key] = int(value.value)
+
+    def wait_until(self, condition, seconds=30):
+        for _ in range(int(seconds / 0.05)):
+            if condition():
+                return
+            rospy.rostime.wallsleep(0.05)
+        self.fail("what was waited for never came")
+
+    def count(self, part):
+        return sum(n for key, n in self.rejected.items() if part in key)
+
+    def good_mesh(self):
+        response = self.build(request())
+        self.assertEqual(response.result.code, Result.OK, response.result.message)
+        return rospy.wait_for_message("mesh", TetMesh, timeout=10)
+
+    def test_1_P11_poses_before_the_first_mesh_are_ignored(self):
+        for i in range(20):
+            self.send_pose(i + 1.0)
+        self.assertEqual(self.build(request()).result.code, Result.E_NO_VOLUME)
+
+    def test_2_V1_to_V17_volumes_are_refused_and_the_last_good_one_stays(self):
+        self.volume.publish(ball())
+        self.wait_until(lambda: self.build(request()).result.code == Result.OK)
+        good = self.good_mesh()
+        good_data = ball().data
+        floats = struct.pack("<%df" % SIZE**3, *([1.0] * (SIZE**3 - 1)), math.nan)
+        bad = [
+            ("V1", with_fields(data=good_data[:-1])),
+            ("V1", with_fields(data=good_data + b"x")),
+            ("V2", with_fields(width=0)),
+            ("V2", with_fields(width=65536, height=65536, depth=65536)),
+            ("V2", with_fields(width=0xffffffff, height=0xffffffff, depth=0xffffffff)),
+            ("V3", with_fields(spacing__x=0.0)),
+            ("V3", with_fields(spacing__y=math.nan)),
+            ("V3", with_fields(spacing__z=1e3)),
+            ("V5", with_fields(encoding="rgb8")),
+            ("V5", with_fields(encoding="16UC1")),
+            ("V6", with_fields(encoding="32FC1", data=floats)),
+            ("V11", with_fields(origin__orientation__w=0.0)),
+            ("V14", with_fields(header__frame_id="")),
+        ]
+        for name, volume in bad:
+            before = self.count("volumes rejected")
+            self.volume.publish(volume)
+            self.wait_until(lambda: self.count("volumes rejected") == before + 1)
+        self.assertEqual(self.good_mesh().uuid, good.uuid)
+        # What is only odd is meshed: big-endian data, and Hounsfield units far below zero.
+        swapped = b"".join(struct.pack(">h", v) for v in good_data)
+        self.volume.publish(with_fields(encoding="16SC1", is_bigendian=1, data=swapped))
+        self.wait_until(lambda: self.good_mesh().header.stamp > good.header.stamp)
+        self.assertEqual(self.good_mesh().uuid, good.uuid)
+        hounsfield = b"".join(struct.pack("<h", 10 * v - 1024) for v in good_data)
+        self.volume.publish(with_fields(encoding="16SC1", quantity="hounsfield", data=hounsfield))
+        self.wait_until(lambda: self.build(request(iso_value=-24.0)).result.code == Result.OK)
+        self.volume.publish(ball())
+        self.wait_until(lambda: self.good_mesh().uuid == good.uuid)
+
+    def test_3_V7_V8_V9_volumes_without_a_surface_or_with_too_little_of_one(self):
+        def built_from(volume, expected):
+            # The volume takes its time to arrive: until then the one before it answers.
+            self.volume.publish(volume)
+            self.wait_until(lambda: expected(self.build(request())))
+            return self.build(request())
+        air = built_from(with_fields(data=bytes([3]) * SIZE**3),
+                         lambda r: r.result.code == Result.E_EMPTY_SURFACE)
+        self.assertIn("from 3 to 3", air.result.message)
+        built_from(with_fields(data=bytes([200]) * SIZE**3),
+                   lambda r: r.result.code == Result.OK and r.statistics.border_touched)
+        voxel = with_fields(width=1, height=1, depth=1, data=bytes([200]))
+        small = built_from(voxel, lambda r: r.result.code == Result.E_TOO_SMALL)
+        self.assertIn("would do", small.result.message)
+        self.assertEqual(self.build(request(spacing=0.0004)).result.code, Result.OK)
+        self.volume.publish(ball())
+        self.wait_until(lambda: self.build(request()).result.code == Result.OK)
+
+    def test_4_M1_to_M7_requests_are_refused_with_field_and_value(self):
+        good = self.good_mesh()
+        bad = [
+            (Result.E_N, "level_sections: 0", dict(level_sections=0)),
+            (Result.E_TOO_MANY_TETS, "level_sections: 20", dict(level_sections=20)),
+            (Result.E_N, "level_sections: 256", dict(level_sections=256)),
+            (Result.E_NTINIT, "initial_tetrahedra: 0", dict(spacing=0.0)),
+            (Result.E_NTINIT, "initial_tetrahedra: 1", dict(spacing=0.0, initial_tetrahedra=1)),
+            (Result.E_TOO_MANY_TETS, "initial_tetrahedra: 1000000000",
+             dict(spacing=0.0, initial_tetrahedra=10**9)),
+            (Result.E_TOO_MANY_TETS, "initial_tetrahedra: 4294967295",
+             dict(spacing=0.0, initial_tetrahedra=0xffffffff)),
+            (Result.E_PARAM, "iso_value: nan", dict(iso_value=math.nan)),
+            (Result.E_PARAM, "iso_value: inf", dict(iso_value=math.inf)),
+            (Result.E_PARAM, "spacing: -1", dict(spacing=-1.0)),
+            (Result.E_PARAM, "spacing: nan", dict(spacing=math.nan)),
+            (Result.E_PARAM, "window: nan", dict(window_low=math.nan)),
+            (Result.E_PARAM, "d_max: -5", dict(d_max=-5.0)),
+            (Result.E_PARAM, "method: 'magic'", dict(method="magic")),
+            (Result.E_NO_VOLUME, "use_mask", dict(use_mask=True)),
+        ]
+        for code, sentence, fields in bad:
+            result = self.build(request(**fields)).result
+            self.assertEqual(result.code, code, result.message)
+            self.assertIn(sentence, result.message)
+        self.assertEqual(self.good_mesh().uuid, good.uuid)  # M10 too
+        # M5, M6: fewer values than sections are no error.
+        self.volume.publish(with_fields(data=bytes(200 if v > 100 else 0 for v in ball().data)))
+        self.wait_until(lambda: self.build(request(level_sections=9)).result.code == Result.OK)
+        self.volume.publish(ball())
+        self.wait_until(lambda: self.good_mesh().uuid == good.uuid)
+
+    def test_5_M8_a_second_request_is_answered_busy_while_the_first_runs(self):
+        codes = []
+        slow = threading.Thread(
+            target=lambda: codes.append(self.build(request(spacing=0.0005, level_sections=1)).result.code))
+        slow.start()
+        busy = None
+        while slow.is_alive():
+            result = rospy.ServiceProxy("mesher_node/build_mesh", BuildMesh)(request()).result
+            if result.code == Result.E_BUSY:
+                busy = result
+                break
+        slow.join()
+        self.assertIsNotNone(busy)
+        self.assertEqual(busy.message, "build_mesh: a build is running")
+        self.assertIn(codes[0], (Result.OK, Result.E_BUSY))
+        self.good_mesh()
+
+    def send_pose(self, stamp, place=(CENTRE, CENTRE, 100.0), frame="patient", w=1.0):
+        pose = PoseStamped()
+        pose.header.stamp = rospy.Time.from_sec(stamp)
+        pose.header.frame_id = frame
+        pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = (1e-3 * c for c in place)
+        pose.pose.orientation.w = w
+        self.pose.publish(pose)
+
+    def displacement(self):
+        cloud = rospy.wait_for_message("deformed_cloud", PointCloud2, timeout=10)
+        values = [c for p in point_cloud2.read_points(cloud) for c in p]
+        self.assertTrue(all(math.isfinite(v) for v in values))
+        return max(p[0] for p in point_cloud2.read_points(cloud, ["displacement"]))
+
+    def dropped(self):
+        return self.statuses[-1].dropped_poses if self.statuses else 0
+
+    def test_6_P1_P2_P6_P8_poses_that_make_no_sense_are_dropped_and_counted(self):
+        self.good_mesh()
+        top = (CENTRE, CENTRE, CENTRE + RADIUS + 1.0)
+        time = 1000.0
+        self.wait_until(lambda: len(self.statuses) > 0)
+        for bad in (dict(place=(math.nan, 0, 0)), dict(place=(0, math.inf, 0)), dict(w=0.0), dict(w=1.2),
+                    dict(w=math.nan), dict(stamp=0.0), dict(frame="nowhere"), dict(frame="")):
+            before = self.dropped()
+            fields = {"stamp": time, **bad}
+            self.wait_until(lambda: self.send_pose(**fields) or self.dropped() > before)
+        # P8: touching without moving leaves every vertex at rest.
+        for i in range(10):
+            self.send_pose(time + 0.01 * i, top)
+            rospy.rostime.wallsleep(0.01)
+        self.assertEqual(self.displacement(), 0.0)
+        # P2: a quaternion that is nearly one is used.
+        pressed = (CENTRE, CENTRE, CENTRE + RADIUS - 1.0)
+        def press():
+            self.send_pose(time + 1.0, top, w=0.95)
+            rospy.rostime.wallsleep(0.02)
+            self.send_pose(time + 1.1, pressed, w=0.95)
+            return self.displacement() > 0.0015
+        self.wait_until(press)
+        # P6: a frame that becomes known is used from then on, a driver's leading slash and all.
+        transform = TransformStamped()
+        transform.header.frame_id = "patient"
+        transform.child_frame_id = "tracker"
+        transform.transform.translation.z = 0.05
+        transform.transform.rotation.w = 1.0
+        self.tf.publish(TFMessage([transform]))
+        def press_in_tracker():
+            self.send_pose(time + 2.0, (top[0], top[1], top[2] - 50.0), frame="/tracker")
+            rospy.rostime.wallsleep(0.02)
+            self.send_pose(time + 2.1, (top[0], top[1], top[2] - 53.0), frame="/tracker")
+            return abs(self.displacement() - 0.003) < 1e-4
+        self.wait_until(lambda: self.displacement() == 0.0)
+        self.wait_until(press_in_tracker)
+
+    def test_7_a_bad_mesh_leaves_the_last_one(self):
+        good = self.good_mesh()
+        self.wait_until(lambda: self.statuses[-1].mesh_uuid == good.uuid)
+        self.wait_until(lambda: self.mesh.get_num_connections() > 0)
+        for spoil in (lambda m: m.levels[:-1], lambda m: None):
+            bad = rospy.wait_for_message("mesh", TetMesh, timeout=10)
+            shorter = spoil(bad)
+            if shorter is not None:
+                bad.levels = shorter
+            else:
+                bad.tetrahedra = (len(bad.densities),) + bad.tetrahedra[1:]
+            bad.uuid = "bad"
+            before = self.statuses[-1].rejected_meshes
+            self.mesh.publish(bad)
+            self.wait_until(lambda: self.statuses[-1].rejected_meshes > before)
+        self.assertEqual(self.statuses[-1].mesh_uuid, good.uuid)
+
+    def test_8_both_nodes_are_the_ones_that_were_started(self):
+        nodes = {n for state in rosgraph.Master("/test").getSystemState() for _, names in state for n in names}
+        self.assertIn("/mesher_node", nodes)
+        self.assertIn("/deformer_node", nodes)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("soft_tissue_sim", "bad_input", BadInput)

@@ -1,0 +1,188 @@
+#include "ros/convert.h"
+#include "ros/display_mesh.h"
+#include "ros/markers.h"
+#include "ros/parameters.h"
+#include "ros/pose_input.h"
+#include "support/mesh_checks.h"
+#include "support/shapes.h"
+#include "tissue/refine/build_mesh.h"
+
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <cstring>
+
+namespace {
+
+using namespace tissue_ros;
+using tissue_test::refusal;
+
+tissue::TetMesh small_mesh() {
+  const tissue_test::Shape ball = tissue_test::synthetic_shapes()[0];
+  tissue::MeshOptions options;
+  options.iso_value = ball.iso;
+  options.spacing = 0.006;
+  return tissue::build_mesh(ball.volume, nullptr, options).mesh;
+}
+
+template <class T>
+void compare(const YAML::Node& yaml, const char* name, const T& value, std::size_t& count) {
+  ASSERT_TRUE(yaml[name].IsDefined()) << name;
+  EXPECT_EQ(yaml[name].as<T>(), value) << name;
+  ++count;
+}
+
+template <class Parameters>
+void expect_defaults(const YAML::Node& yaml) {
+  Parameters parameters;
+  std::size_t count = 0;
+  parameters.visit([&](const char* name, auto& value) { compare(yaml, name, value, count); });
+  EXPECT_EQ(yaml.size(), count);
+}
+
+TEST(Parameters, TheShippedFileHoldsTheDefaultsOfTheCode) {
+  const YAML::Node yaml =
+      YAML::LoadFile(std::string(TISSUE_SOURCE_DIR) + "/config/parameters.yaml");
+  expect_defaults<VolumeNodeParameters>(yaml["volume"]);
+  expect_defaults<MesherNodeParameters>(yaml["mesher"]);
+  expect_defaults<DeformerNodeParameters>(yaml["deformer"]);
+}
+
+TEST(Result, HasTheConstantsOfTheCode) {
+  using soft_tissue_sim::Result;
+  using tissue::ErrorCode;
+  EXPECT_EQ(Result::OK, static_cast<int>(ErrorCode::kOk));
+  EXPECT_EQ(Result::E_SIZE_MISMATCH, static_cast<int>(ErrorCode::kSizeMismatch));
+  EXPECT_EQ(Result::E_TOO_MANY_TETS, static_cast<int>(ErrorCode::kTooManyTets));
+  EXPECT_EQ(Result::E_NTINIT, static_cast<int>(ErrorCode::kNTinit));
+  EXPECT_EQ(Result::E_PARAM, static_cast<int>(ErrorCode::kParam));
+  EXPECT_EQ(Result::E_BUSY, static_cast<int>(ErrorCode::kBusy));
+  EXPECT_EQ(Result::E_MESH_QUALITY, static_cast<int>(ErrorCode::kMeshQuality));
+  EXPECT_EQ(Result::E_NOMEM, static_cast<int>(ErrorCode::kNomem));
+  EXPECT_EQ(Result::E_INTERNAL, static_cast<int>(ErrorCode::kInternal));
+}
+
+TEST(Convert, AVolumeComesBackAsItWas) {
+  tissue::Volume volume =
+      *tissue_test::byte_volume(5, [](double x, double y, double z) { return x + 5 * y + 25 * z; });
+  volume.grid.axes = Eigen::AngleAxisd(0.4, tissue::Vec3(1, 2, 2) / 3.0).toRotationMatrix();
+  volume.grid.origin = tissue::Vec3(0.1, 0.2, -0.3);
+  volume.slope = 2.0;
+  volume.intercept = -7.0;
+  volume.quantity = tissue::Quantity::kHounsfield;
+  const tissue::Volume back = from_message(to_message(volume));
+  EXPECT_TRUE(tissue::same_grid(volume.grid, back.grid));
+  EXPECT_LT((volume.grid.axes - back.grid.axes).norm(), 1e-12);
+  EXPECT_EQ(volume.voxels, back.voxels);
+  EXPECT_EQ(back.slope, 2.0);
+  EXPECT_EQ(back.intercept, -7.0);
+  EXPECT_EQ(back.quantity, tissue::Quantity::kHounsfield);
+}
+
+TEST(Convert, AMeshComesBackAsItWas) {
+  const tissue::TetMesh mesh = small_mesh();
+  const tissue::TetMesh back = from_message(to_message(mesh));
+  EXPECT_EQ(tissue::mesh_uuid(back), mesh.uuid);
+  EXPECT_EQ(back.parents, mesh.parents);
+  EXPECT_EQ(back.surface, mesh.surface);
+  EXPECT_EQ(back.lattice_vertices, mesh.lattice_vertices);
+}
+
+TEST(Convert, AMeshWhoseArraysDisagreeIsRefused) {
+  const soft_tissue_sim::TetMesh good = to_message(small_mesh());
+  auto bad = good;
+  bad.vertices.pop_back();
+  EXPECT_EQ(refusal([&] { from_message(bad); }).substr(0, 15), "E_SIZE_MISMATCH");
+  bad = good;
+  bad.tetrahedra[5] = 0xffffffff;
+  EXPECT_EQ(refusal([&] { from_message(bad); }).substr(0, 15), "E_SIZE_MISMATCH");
+  bad = good;
+  bad.header.frame_id.clear();
+  EXPECT_EQ(refusal([&] { from_message(bad); }).substr(0, 7), "E_FRAME");
+  // A mesh from elsewhere, without surface, hierarchy or name, is taken.
+  auto foreign = good;
+  foreign.surface.clear();
+  foreign.parents.clear();
+  foreign.uuid.clear();
+  EXPECT_EQ(from_message(foreign).surface.size(), good.surface.size() / 3);
+  EXPECT_EQ(from_message(foreign).uuid, good.uuid);
+}
+
+TEST(Convert, ACloudHoldsEveryVertexInOrder) {
+  const tissue::TetMesh mesh = small_mesh();
+  const tissue::Body body = tissue::body_of(mesh);
+  tissue::State state = rest_state(body);
+  state.positions[3] += tissue::Vec3(0.003, 0.004, 0.0);
+  const auto levels = vertex_levels(mesh);
+  const sensor_msgs::PointCloud2 cloud = cloud_message(body, state, levels);
+  ASSERT_EQ(cloud.width, mesh.vertices.size());
+  ASSERT_EQ(cloud.data.size(), cloud.width * 6 * sizeof(float));
+  float point[6];
+  std::memcpy(point, &cloud.data[3 * cloud.point_step], sizeof(point));
+  EXPECT_FLOAT_EQ(point[0], mesh.vertices[3].x() + 0.003f);
+  EXPECT_EQ(point[3], mesh.densities[3]);
+  EXPECT_EQ(point[4], levels[3]);
+  EXPECT_NEAR(point[5], 0.005f, 1e-7f);
+}
+
+TEST(DisplayMesh, KeepsToItsBudgetAndShowsTheInside) {
+  const tissue::TetMesh mesh = small_mesh();
+  const DisplayMesh whole = display_mesh(mesh, section_from("none", 0.5), 1000000);
+  EXPECT_EQ(whole.hull.size(), mesh.surface.size());
+  EXPECT_TRUE(whole.cut.empty());
+  const DisplayMesh half = display_mesh(mesh, section_from("y", 0.5), 1000000);
+  EXPECT_GT(half.cut.size(), 50u);
+  EXPECT_NEAR(double(half.hull.size()), 0.5 * double(whole.hull.size()),
+              0.1 * double(whole.hull.size()));
+  for (const std::size_t budget : {600u, 200u, 50u}) {
+    const DisplayMesh few = display_mesh(mesh, section_from("y", 0.5), budget);
+    EXPECT_LE(few.hull.size() + few.cut.size(), budget);
+    EXPECT_GT(few.hull.size() + few.cut.size(), budget / 5);
+  }
+}
+
+geometry_msgs::PoseStamped sound_pose() {
+  geometry_msgs::PoseStamped pose;
+  pose.header.stamp = ros::Time(1.0);
+  pose.header.frame_id = "patient";
+  pose.pose.orientation.w = 1.0;
+  return pose;
+}
+
+TEST(PoseInput, P1_P2_NamesWhatIsWrongWithAPose) {
+  EXPECT_EQ(pose_problem(sound_pose()), "");
+  auto pose = sound_pose();
+  pose.pose.position.y = HUGE_VAL;
+  EXPECT_EQ(pose_problem(pose), "pose.position is not finite");
+  for (const double w : {0.0, 0.89, 1.11, std::nan("")}) {
+    pose = sound_pose();
+    pose.pose.orientation.w = w;
+    EXPECT_EQ(pose_problem(pose).substr(0, 25), "pose.orientation has norm") << w;
+  }
+  for (const double w : {0.91, 1.09}) {
+    pose = sound_pose();
+    pose.pose.orientation.w = w;
+    EXPECT_EQ(pose_problem(pose), "") << w;
+  }
+  pose = sound_pose();
+  pose.header.stamp = ros::Time();
+  EXPECT_NE(pose_problem(pose), "");
+}
+
+TEST(PoseInput, P6_WaitsForNoTransform) {
+  const tf2_ros::Buffer empty;
+  std::string why_not;
+  auto pose = sound_pose();
+  EXPECT_TRUE(pose_in_frame(pose, "patient", empty, why_not));
+  pose.header.frame_id = "/patient";
+  EXPECT_TRUE(pose_in_frame(pose, "patient", empty, why_not));
+  for (const std::string frame : {"nowhere", ""}) {
+    pose.header.frame_id = frame;
+    why_not.clear();
+    EXPECT_FALSE(pose_in_frame(pose, "patient", empty, why_not));
+    EXPECT_NE(why_not, "");
+  }
+}
+
+}  // namespace
