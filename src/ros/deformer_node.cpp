@@ -159,7 +159,10 @@ void DeformerNode::publish_markers() {
   const std::string& frame = simulation_->mesh.frame_id;
   auto markers = level_markers(
       simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return positions[v]; }, frame);
-  if (tool_) markers.markers.push_back(tool_marker(tool_->position, scene_.tool.radius, frame));
+  if (tool_) {
+    markers.markers.push_back(
+        ball_marker("tool", tool_->position, scene_.tool.radius, 1.0f, frame));
+  }
   marker_publisher_.publish(markers);
 }
 

@@ -109,12 +109,13 @@ visualization_msgs::MarkerArray replacing_all(visualization_msgs::MarkerArray ar
   return array;
 }
 
-visualization_msgs::Marker tool_marker(const tissue::Vec3& position, double radius,
-                                       const std::string& frame_id) {
-  Marker marker = empty_marker(frame_id, "tool", Marker::SPHERE);
+visualization_msgs::Marker ball_marker(const std::string& name, const tissue::Vec3& position,
+                                       double radius, float opacity, const std::string& frame_id) {
+  Marker marker = empty_marker(frame_id, name, Marker::SPHERE);
   marker.pose.position = point(position);
   marker.scale.x = marker.scale.y = marker.scale.z = 2.0 * radius;
   marker.color = colour(1.0f, 0.85f, 0.1f);
+  marker.color.a = opacity;
   return marker;
 }
 

@@ -23,8 +23,8 @@ visualization_msgs::MarkerArray density_markers(const DisplayMesh& display,
 /// The same markers after an order to delete all that were there before.
 visualization_msgs::MarkerArray replacing_all(visualization_msgs::MarkerArray array);
 
-/// A ball for the tool, in namespace `tool`.
-visualization_msgs::Marker tool_marker(const tissue::Vec3& position, double radius,
-                                       const std::string& frame_id);
+/// A yellow ball in a namespace of its own, seen through where `opacity` is below 1.
+visualization_msgs::Marker ball_marker(const std::string& name, const tissue::Vec3& position,
+                                       double radius, float opacity, const std::string& frame_id);
 
 }  // namespace tissue_ros

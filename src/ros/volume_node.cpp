@@ -1,6 +1,7 @@
 #include "ros/volume_node.h"
 
 #include "ros/convert.h"
+#include "ros/markers.h"
 #include "tissue/field/edit_volume.h"
 #include "tissue/field/mask.h"
 #include "tissue/field/read_volume.h"
@@ -94,6 +95,12 @@ VolumeNode::VolumeNode(ros::NodeHandle handle, const VolumeNodeParameters& param
   if (prepared.mask) {
     mask_publisher_ = handle.advertise<soft_tissue_sim::Volume>("mask", 1, true);
     mask_publisher_.publish(checked_message(*prepared.mask));
+  }
+  if (!parameters.tumour.empty()) {
+    const double* t = parameters.tumour.data();
+    tumour_publisher_ = handle.advertise<visualization_msgs::Marker>("tumour_marker", 1, true);
+    tumour_publisher_.publish(
+        ball_marker("tumour", Vec3(t[0], t[1], t[2]), t[3], 0.4f, parameters.frame_id));
   }
   volume_publisher_ = handle.advertise<soft_tissue_sim::Volume>("volume", 1, true);
   volume_publisher_.publish(checked_message(prepared.volume));

@@ -20,8 +20,8 @@ struct PreparedVolume {
 /// smoothing. Throws tissue::InputError.
 PreparedVolume prepare_volume(const VolumeNodeParameters& parameters);
 
-/// Publishes a volume and its mask, latched. Throws tissue::InputError, E_TOO_LARGE for what no
-/// message can carry.
+/// Publishes a volume, its mask and where the tumour was put, latched. Throws tissue::InputError,
+/// E_TOO_LARGE for what no message can carry.
 class VolumeNode {
  public:
   VolumeNode(ros::NodeHandle handle, const VolumeNodeParameters& parameters);
@@ -29,6 +29,7 @@ class VolumeNode {
  private:
   ros::Publisher volume_publisher_;
   ros::Publisher mask_publisher_;
+  ros::Publisher tumour_publisher_;
 };
 
 }  // namespace tissue_ros

@@ -10,6 +10,7 @@
 #include <boost/program_options.hpp>
 
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -152,6 +153,24 @@ void write_text(const std::string& path, const std::string& text) {
   if (!file) throw InputError(ErrorCode::kIo, "--stats: '" + path + "' cannot be written");
 }
 
+// What a person wants to know at once; `--stats` has it all.
+void print_summary(const tissue::MeshStatistics& statistics, double meshing_seconds) {
+  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  const auto tets = static_cast<double>(statistics.tetrahedra);
+  const double wished = tets - static_cast<double>(statistics.closure);
+  std::printf("%llu tets, %llu vertices, from %llu initial tets (closure %.1f %%)\n",
+              static_cast<unsigned long long>(statistics.tetrahedra),
+              static_cast<unsigned long long>(statistics.vertices),
+              static_cast<unsigned long long>(statistics.initial),
+              100.0 * static_cast<double>(statistics.closure) / wished);
+  std::printf("dihedral angles %.1f to %.1f deg, boundary to isosurface mean %.2g m, max %.2g m\n",
+              statistics.dihedral[0] * kDegrees, statistics.dihedral[1] * kDegrees,
+              statistics.surface_error[0], statistics.surface_error[1]);
+  std::printf("%.3f CPU s from volume to mesh: %.2f million tets per CPU s, %.0f bytes per tet\n",
+              meshing_seconds, 1e-6 * tets / meshing_seconds,
+              static_cast<double>(statistics.peak_bytes) / tets);
+}
+
 void run(const Arguments& arguments) {
   tissue::StageClock files;
   files.start("read");
@@ -174,12 +193,14 @@ void run(const Arguments& arguments) {
   files.stop();
 
   tissue::MeshStatistics& statistics = built.mesh.statistics;
+  double meshing_seconds = 0.0;
+  for (const tissue::StageCost& stage : statistics.stages) meshing_seconds += stage.cpu_seconds;
   statistics.stages.insert(statistics.stages.begin(), files.stages()[0]);
   statistics.stages.push_back(files.stages()[1]);
   if (!arguments.stats.empty()) {
     write_text(arguments.stats, tissue::to_json(statistics).dump(2));
   }
-  std::cout << statistics.tetrahedra << " tets, " << statistics.vertices << " vertices\n";
+  print_summary(statistics, meshing_seconds);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "ros/markers.h"
 #include "ros/parameters.h"
 #include "ros/pose_input.h"
+#include "ros/volume_node.h"
 #include "support/mesh_checks.h"
 #include "support/shapes.h"
 #include "tissue/refine/build_mesh.h"
@@ -124,6 +125,43 @@ TEST(Convert, ACloudHoldsEveryVertexInOrder) {
   EXPECT_EQ(point[3], mesh.densities[3]);
   EXPECT_EQ(point[4], levels[3]);
   EXPECT_NEAR(point[5], 0.005f, 1e-7f);
+}
+
+TEST(PrepareVolume, NamesTheParameterThatIsWrong) {
+  VolumeNodeParameters good;
+  good.file = std::string(TISSUE_SOURCE_DIR) + "/data/ch2bet.nii.gz";
+  const auto refused = [&](const std::function<void(VolumeNodeParameters&)>& spoil) {
+    VolumeNodeParameters parameters = good;
+    spoil(parameters);
+    return refusal([&] { prepare_volume(parameters); });
+  };
+  using P = VolumeNodeParameters;
+  EXPECT_EQ(refused([](P&) {}), "");
+  EXPECT_EQ(refused([](P& p) { p.file.clear(); }), "E_FILE: ~file: no volume is named");
+  EXPECT_EQ(refused([](P& p) { p.file = "/no.nii"; }).substr(0, 6), "E_FILE");
+  EXPECT_EQ(refused([](P& p) { p.frame_id = "/patient"; }).substr(0, 7), "E_FRAME");
+  EXPECT_EQ(refused([](P& p) { p.quantity = "mass"; }),
+            "E_PARAM: ~quantity: 'mass' is not one of density hounsfield label");
+  EXPECT_EQ(refused([](P& p) { p.crop = {1, 2}; }), "E_PARAM: ~crop: has 2 numbers, not 6");
+  EXPECT_EQ(refused([](P& p) { p.tumour = {1}; }), "E_PARAM: ~tumour: has 1 numbers, not 5");
+  EXPECT_EQ(refused([](P& p) { p.mask_above = 20, p.mask_opening = 99; }).substr(0, 21),
+            "E_PARAM: mask_opening");
+  EXPECT_EQ(refused([](P& p) { p.mask_above = 20, p.mask_smoothing = -1; }).substr(0, 23),
+            "E_PARAM: mask_smoothing");
+}
+
+TEST(PrepareVolume, CropsMasksAndPutsATumour) {
+  VolumeNodeParameters parameters;
+  parameters.file = std::string(TISSUE_SOURCE_DIR) + "/data/ch2bet.nii.gz";
+  parameters.crop = {-0.03, -0.06, -0.01, 0.03, 0.0, 0.05};
+  parameters.tumour = {0.0, -0.03, 0.02, 0.01, 255};
+  parameters.mask_above = 20;
+  const PreparedVolume prepared = prepare_volume(parameters);
+  EXPECT_EQ(prepared.volume.grid.size, (tissue::GridSize{61, 61, 61}));
+  EXPECT_EQ(value_range(prepared.volume)[1], 255.0);
+  ASSERT_TRUE(prepared.mask);
+  EXPECT_TRUE(same_grid(prepared.mask->grid, prepared.volume.grid));
+  EXPECT_EQ(value_range(*prepared.mask), (std::array<double, 2>{0.0, 1.0}));
 }
 
 TEST(DisplayMesh, KeepsToItsBudgetAndShowsTheInside) {

@@ -31,7 +31,12 @@ struct MeshFindings {
 
 MeshFindings inspect(const tissue::TetMesh& mesh);
 
-/// Every demand that a mesh must meet, but for its angles.
+/// Every demand that a mesh must meet, but for its angles: matching faces, positive tets, no
+/// hanging or unused vertices, at most `copies` vertices at the place of another, and a closed
+/// 2-manifold around the volume of the tets. Returns what was found.
+MeshFindings expect_sound(const tissue::TetMesh& mesh, std::size_t copies = 0);
+
+/// The same, and that the mesh's own statistics say so.
 void expect_conforming(const tissue::TetMesh& mesh);
 
 /// What is thrown as InputError, as "E_CODE: sentence"; "" if nothing is.
