@@ -17,12 +17,12 @@ TEST(DensityWindow, V17_MakesEveryDensityPositive) {
   volume->quantity = Quantity::kHounsfield;
   const ImplicitSurface surface = surface_at_iso(volume, -500.0);
   const DensityWindow window = default_window(*volume, surface, 255.0);
-  EXPECT_EQ(window.low, -1024.0 + 273.0 * 2);
-  EXPECT_EQ(window.high, -1024.0 + 273.0 * 15);
+  const double low = -1024.0 + 273.0 * 2, high = -1024.0 + 273.0 * 15;
+  EXPECT_NEAR(window.density(low + (high - low) / 255.0 * 7.0), 7.0, 1e-9);
   EXPECT_EQ(window.density(-1024.0), 1.0);
-  EXPECT_EQ(window.density(window.high), 255.0);
+  EXPECT_EQ(window.density(high), 255.0);
   EXPECT_EQ(window.density(5000.0), 255.0);
-  EXPECT_NEAR(window.density(0.5 * (window.low + window.high)), 127.5, 1e-9);
+  EXPECT_NEAR(window.density(0.5 * (low + high)), 127.5, 1e-9);
 }
 
 TEST(DensityWindow, LeavesEightBitValuesAsTheyAreWhateverTheEncoding) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iostream>
 #include <random>
 
 namespace tissue_test {
@@ -122,7 +123,10 @@ std::vector<Shape> real_volumes() {
   std::vector<Shape> shapes = {{"ch2bet", shipped_brain(), 20.0}};
   for (const std::string name :
        {"seg3d_mr_brain.nii.gz", "invesalius_brain_u8_tumour_r10.nii.gz"}) {
-    if (!std::ifstream(real_data(name))) continue;
+    if (!std::ifstream(real_data(name))) {
+      std::cout << "[   NOTE   ] " << name << " is not at hand and is skipped\n";
+      continue;
+    }
     shapes.push_back(
         {name, std::make_shared<tissue::Volume>(tissue::read_volume(real_data(name))), 40.0});
   }

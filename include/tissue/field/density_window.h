@@ -6,15 +6,15 @@ namespace tissue {
 
 /// Maps values to densities: `low` to 0 and `high` to `d_max`, linearly, clamped to [1, d_max], so
 /// that a density is always positive.
-struct DensityWindow {
-  double low = 0.0;
-  double high = 255.0;
-  double d_max = 255.0;
+class DensityWindow {
+ public:
+  DensityWindow(double low, double high, double d_max)
+      : low_(low), d_max_(d_max), scale_(d_max / (high - low)) {}
 
-  double density(double value) const {
-    const double scaled = (value - low) * (d_max / (high - low));
-    return std::clamp(scaled, 1.0, d_max);
-  }
+  double density(double value) const { return std::clamp((value - low_) * scale_, 1.0, d_max_); }
+
+ private:
+  double low_, d_max_, scale_;
 };
 
 /// The window that does not depend on the encoding: the identity if all values lie in [0, d_max],
@@ -22,7 +22,8 @@ struct DensityWindow {
 DensityWindow default_window(const Volume& volume, const ImplicitSurface& surface, double d_max);
 
 /// The mean density over a tet, by the midpoint rule on its 8^k congruent parts: k grows with the
-/// tet's size until a part's long edge is at most 3 voxels (a part then holds about two voxels).
+/// tet's size until a part's long edge is at most 4 voxels: a part then holds about five, and a
+/// trilinear sample blends eight.
 class TetSampling {
  public:
   /// `edge` is the tet's long edge [m]; `spacing` that of the voxels.

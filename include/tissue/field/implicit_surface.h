@@ -13,6 +13,8 @@ struct ImplicitSurface {
   double iso = 0.0;
   /// True where values above `iso` are inside, as in an image; false for a distance map.
   bool inside_above = true;
+  /// Smallest and largest value of the field.
+  std::array<double, 2> range = {0.0, 1.0};
 };
 
 /// Inside where the value is above `iso`. Throws InputError E_PARAM if `iso` is not finite and
@@ -39,8 +41,8 @@ class ImplicitFunction {
       high_[axis] = (static_cast<double>(grid.size[axis]) - 0.5) * grid.spacing[axis];
     }
     // The cap is a steep wall: its slope only has to have the sign right.
-    const std::array<double, 2> range = value_range(*surface.field);
-    cap_slope_ = std::max(range[1] - range[0], std::abs(range[1])) / grid.spacing.minCoeff();
+    const auto [low, high] = surface.range;
+    cap_slope_ = std::max(high - low, std::abs(high)) / grid.spacing.minCoeff();
     if (!(cap_slope_ > 0.0)) cap_slope_ = 1.0;
   }
 

@@ -33,7 +33,7 @@ std::vector<double> smoothed(std::vector<double> values, const std::vector<Tet>&
 std::vector<std::uint32_t> density_thresholds(const std::vector<double>& densities,
                                               const LevelOptions& options);
 
-/// The number of different floor(T_i).
+/// The number of different floor(T_i); all are at least 0.
 std::size_t distinct_densities(const std::vector<double>& densities);
 
 /// l = base_level + N − 1 − m with the largest m for which d_th(m) <= T_i (Eq. 6): the softer the

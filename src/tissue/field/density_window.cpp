@@ -55,7 +55,8 @@ std::array<double, 2> range_inside(const Volume& volume, const ImplicitSurface& 
 }  // namespace
 
 DensityWindow default_window(const Volume& volume, const ImplicitSurface& surface, double d_max) {
-  const std::array<double, 2> all = value_range(volume);
+  const std::array<double, 2> all =
+      &volume == surface.field.get() ? surface.range : value_range(volume);
   if (all[0] >= 0.0 && all[1] <= d_max) return {0.0, d_max, d_max};
   const std::array<double, 2> inside = range_inside(volume, surface);
   if (inside[1] > inside[0]) return {inside[0], inside[1], d_max};
@@ -64,7 +65,7 @@ DensityWindow default_window(const Volume& volume, const ImplicitSurface& surfac
 
 TetSampling::TetSampling(double edge, const Vec3& spacing) {
   const double voxels = edge / std::cbrt(spacing.prod());
-  const int splits = std::clamp(static_cast<int>(std::ceil(std::log2(voxels / 3.0))), 0, 3);
+  const int splits = std::clamp(static_cast<int>(std::ceil(std::log2(voxels / 4.0))), 0, 3);
   append_centroids(Corners::Identity(), splits, weights_);
 }
 

@@ -35,7 +35,7 @@ ImplicitSurface surface_at_iso(std::shared_ptr<const Volume> volume, double iso)
                                                    " leaves nothing inside; the data reach from " +
                                                    to_text(range[0]) + " to " + to_text(range[1]));
   }
-  return {std::move(volume), iso, true};
+  return {std::move(volume), iso, true, range};
 }
 
 ImplicitSurface surface_of_mask(const std::shared_ptr<const Volume>& mask) {
@@ -44,8 +44,9 @@ ImplicitSurface surface_of_mask(const std::shared_ptr<const Volume>& mask) {
     throw InputError(ErrorCode::kEmptySurface, "mask: nothing is set; its values reach from " +
                                                    to_text(range[0]) + " to " + to_text(range[1]));
   }
-  if (mask->quantity != Quantity::kLabel) return {mask, 0.5 * range[1], true};
-  return {std::make_shared<Volume>(signed_distance_map(*mask)), 0.0, false};
+  if (mask->quantity != Quantity::kLabel) return {mask, 0.5 * range[1], true, range};
+  const auto distance = std::make_shared<Volume>(signed_distance_map(*mask));
+  return {distance, 0.0, false, value_range(*distance)};
 }
 
 double voxel_volume_inside(const ImplicitSurface& surface) {

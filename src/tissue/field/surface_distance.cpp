@@ -35,6 +35,9 @@ double distance_to_surface(const Function& f, const Vec3& place, double step, do
     const Vec3 offset = 0.25 * step * Vec3::Unit(axis);
     gradient[axis] = f(place + offset) - f(place - offset);
   }
+  // Close by, one step of Newton's method is as good as a search.
+  const double estimate = 0.5 * step * std::abs(f_place) / gradient.norm();
+  if (estimate < 1e-3 * step) return estimate;
   double nearest = 2.0 * reach;
   if (gradient.norm() > 0.0) {
     const Vec3 downhill = (f_place > 0.0 ? -1.0 : 1.0) * gradient.normalized();

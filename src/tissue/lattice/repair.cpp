@@ -12,36 +12,72 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-// Keeps the tets for which `kept` is set, in their order.
-void keep_tets(LatticeMesh& mesh, const std::vector<std::uint8_t>& kept) {
-  std::size_t next = 0;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    if (kept[t] == 0) continue;
-    mesh.tets[next] = mesh.tets[t];
-    mesh.whole[next] = mesh.whole[t];
-    ++next;
-  }
-  mesh.tets.resize(next);
-  mesh.whole.resize(next);
-}
+// A mesh whose tets can be dropped one by one: the faces are found once and kept up to date.
+class Workpiece {
+ public:
+  explicit Workpiece(LatticeMesh& lattice_mesh)
+      : mesh(lattice_mesh),
+        faces(face_topology(lattice_mesh.tets, lattice_mesh.vertices.size())),
+        kept(lattice_mesh.tets.size(), 1) {}
 
-bool keep_largest_component(LatticeMesh& mesh) {
-  const FaceTopology faces = face_topology(mesh.tets, mesh.vertices.size());
-  DisjointSets sets(mesh.tets.size());
-  for (const auto& tets : faces.face_tets) {
-    if (tets[1] != kNoTet) sets.unite(tets[0], tets[1]);
+  void drop(std::uint32_t t) {
+    if (kept[t] == 0) return;
+    kept[t] = 0;
+    for (const std::uint32_t f : faces.tet_faces[t]) {
+      auto& sides = faces.face_tets[f];
+      if (sides[0] == t) sides[0] = sides[1];
+      sides[1] = kNoTet;
+    }
   }
-  Indices sizes(mesh.tets.size(), 0);
+
+  // Removes the dropped tets and the vertices that nothing uses, keeping the order of the rest.
+  void compact() {
+    Indices number(mesh.vertices.size(), 0);
+    std::size_t next_tet = 0;
+    for (std::size_t t = 0; t < kept.size(); ++t) {
+      if (kept[t] == 0) continue;
+      for (const std::uint32_t vertex : mesh.tets[t]) number[vertex] = 1;
+      mesh.tets[next_tet] = mesh.tets[t];
+      mesh.whole[next_tet] = mesh.whole[t];
+      ++next_tet;
+    }
+    mesh.tets.resize(next_tet);
+    mesh.whole.resize(next_tet);
+    std::uint32_t next_vertex = 0;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+      if (number[v] == 0) continue;
+      mesh.vertices[next_vertex] = mesh.vertices[v];
+      number[v] = next_vertex++;
+    }
+    mesh.vertices.resize(next_vertex);
+    for (Tet& tet : mesh.tets) {
+      for (std::uint32_t& vertex : tet) vertex = number[vertex];
+    }
+  }
+
+  LatticeMesh& mesh;
+  FaceTopology faces;
+  std::vector<std::uint8_t> kept;
+};
+
+void keep_largest_component(Workpiece& piece) {
+  const std::vector<std::uint8_t>& kept = piece.kept;
+  DisjointSets sets(kept.size());
+  for (const auto& sides : piece.faces.face_tets) {
+    if (sides[1] != kNoTet) sets.unite(sides[0], sides[1]);
+  }
+  Indices sizes(kept.size(), 0);
   std::size_t components = 0;
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) components += sizes[sets.find(t)]++ == 0;
-  if (components <= 1) return false;
+  for (std::uint32_t t = 0; t < kept.size(); ++t) {
+    if (kept[t] != 0) components += sizes[sets.find(t)]++ == 0;
+  }
+  if (components <= 1) return;
   const auto largest =
       static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  std::vector<std::uint8_t> kept(mesh.tets.size());
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) kept[t] = sets.find(t) == largest;
-  keep_tets(mesh, kept);
-  mesh.components_dropped += components - 1;
-  return true;
+  for (std::uint32_t t = 0; t < kept.size(); ++t) {
+    if (sets.find(t) != largest) piece.drop(t);
+  }
+  piece.mesh.components_dropped += components - 1;
 }
 
 // A corner of the boundary: triangle (tet, face) at one of its vertices, with the other two.
@@ -67,15 +103,15 @@ struct Defects {
   std::vector<Edge> edges;
 };
 
-std::vector<BoundaryTriangle> boundary_triangles(const LatticeMesh& mesh,
-                                                 const FaceTopology& faces) {
+std::vector<BoundaryTriangle> boundary_triangles(const Workpiece& piece) {
   std::vector<BoundaryTriangle> boundary;
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
+  for (std::uint32_t t = 0; t < piece.kept.size(); ++t) {
+    if (piece.kept[t] == 0) continue;
+    const Tet& tet = piece.mesh.tets[t];
     for (int f = 0; f < 4; ++f) {
-      if (faces.face_tets[faces.tet_faces[t][f]][1] != kNoTet) continue;
+      if (piece.faces.face_tets[piece.faces.tet_faces[t][f]][1] != kNoTet) continue;
       const auto& corner = kTetFaces[f];
-      boundary.push_back(
-          {t, {mesh.tets[t][corner[0]], mesh.tets[t][corner[1]], mesh.tets[t][corner[2]]}});
+      boundary.push_back({t, {tet[corner[0]], tet[corner[1]], tet[corner[2]]}});
     }
   }
   return boundary;
@@ -119,8 +155,8 @@ void inspect_vertex(const std::vector<BoundaryTriangle>& boundary,
   }
 }
 
-Defects find_defects(const LatticeMesh& mesh, const FaceTopology& faces) {
-  const std::vector<BoundaryTriangle> boundary = boundary_triangles(mesh, faces);
+Defects find_defects(const Workpiece& piece) {
+  const std::vector<BoundaryTriangle> boundary = boundary_triangles(piece);
   std::vector<BoundaryCorner> corners;
   corners.reserve(boundary.size() * 6);
   for (std::uint32_t i = 0; i < boundary.size(); ++i) {
@@ -142,12 +178,13 @@ Defects find_defects(const LatticeMesh& mesh, const FaceTopology& faces) {
 }
 
 // The tets at each of the given vertices.
-std::map<std::uint32_t, Indices> stars(const LatticeMesh& mesh, const Indices& vertices) {
-  std::vector<std::uint8_t> wanted(mesh.vertices.size(), 0);
+std::map<std::uint32_t, Indices> stars(const Workpiece& piece, const Indices& vertices) {
+  std::vector<std::uint8_t> wanted(piece.mesh.vertices.size(), 0);
   for (const std::uint32_t vertex : vertices) wanted[vertex] = 1;
   std::map<std::uint32_t, Indices> result;
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) {
-    for (const std::uint32_t vertex : mesh.tets[t]) {
+  for (std::uint32_t t = 0; t < piece.kept.size(); ++t) {
+    if (piece.kept[t] == 0) continue;
+    for (const std::uint32_t vertex : piece.mesh.tets[t]) {
       if (wanted[vertex] != 0) result[vertex].push_back(t);
     }
   }
@@ -156,15 +193,14 @@ std::map<std::uint32_t, Indices> stars(const LatticeMesh& mesh, const Indices& v
 
 // Classes of the tets of a star that are joined by faces containing every one of `common`. Returns
 // the class of each, numbered in the order of the tets.
-Indices classes_around(const Tet* tets, const FaceTopology& faces, const Indices& star,
-                       const Indices& common) {
+Indices classes_around(const Workpiece& piece, const Indices& star, const Indices& common) {
   DisjointSets sets(star.size());
   for (std::uint32_t i = 0; i < star.size(); ++i) {
     for (int f = 0; f < 4; ++f) {
       // A face holds every vertex of its tet but the one that it lies opposite to.
-      const std::uint32_t opposite = tets[star[i]][f];
+      const std::uint32_t opposite = piece.mesh.tets[star[i]][f];
       if (std::find(common.begin(), common.end(), opposite) != common.end()) continue;
-      const auto& sides = faces.face_tets[faces.tet_faces[star[i]][f]];
+      const auto& sides = piece.faces.face_tets[piece.faces.tet_faces[star[i]][f]];
       const std::uint32_t neighbour = sides[0] == star[i] ? sides[1] : sides[0];
       const auto found = std::lower_bound(star.begin(), star.end(), neighbour);
       if (found != star.end() && *found == neighbour) {
@@ -181,13 +217,15 @@ Indices classes_around(const Tet* tets, const FaceTopology& faces, const Indices
   return classes;
 }
 
-// Gives every class of tets at a vertex a vertex of its own.
-std::size_t copy_vertices(LatticeMesh& mesh, const FaceTopology& faces, const Indices& vertices) {
-  std::size_t copies = 0;
-  // Faces and stars are those before any copy, and so are the vertices that they are compared with.
-  const std::vector<Tet> before = mesh.tets;
-  for (const auto& [vertex, star] : stars(mesh, vertices)) {
-    const Indices classes = classes_around(before.data(), faces, star, {vertex});
+// Gives every class of tets at a vertex a vertex of its own. Tets on both sides of a face are in
+// one class at each of its vertices, so that the faces stay as they are.
+void copy_vertices(Workpiece& piece, const Indices& vertices) {
+  LatticeMesh& mesh = piece.mesh;
+  const std::map<std::uint32_t, Indices> all = stars(piece, vertices);
+  std::map<std::uint32_t, Indices> classes_at;
+  for (const auto& [vertex, star] : all) classes_at[vertex] = classes_around(piece, star, {vertex});
+  for (const auto& [vertex, star] : all) {
+    const Indices& classes = classes_at[vertex];
     const std::uint32_t count = *std::max_element(classes.begin(), classes.end());
     const auto first_copy = static_cast<std::uint32_t>(mesh.vertices.size());
     const Vec3 place = mesh.vertices[vertex];
@@ -197,74 +235,55 @@ std::size_t copy_vertices(LatticeMesh& mesh, const FaceTopology& faces, const In
       Tet& tet = mesh.tets[star[i]];
       *std::find(tet.begin(), tet.end(), vertex) = first_copy + classes[i] - 1;
     }
-    copies += count;
+    mesh.vertices_copied += count;
   }
-  return copies;
 }
 
-// Drops the tets that meet the rest only in an edge, or that belong to a vertex's smaller fans.
-std::size_t drop_defects(LatticeMesh& mesh, const FaceTopology& faces, const Defects& defects) {
-  std::vector<std::uint8_t> kept(mesh.tets.size(), 1);
-  const std::map<std::uint32_t, Indices> at_vertex = stars(mesh, defects.vertices);
-  bool dropped_at_edge = false;
+// The tets that meet the rest only in an edge, or else those at a vertex's smaller fans.
+Indices tets_to_drop(const Workpiece& piece, const Defects& defects) {
+  Indices result;
+  const std::map<std::uint32_t, Indices> at_vertex = stars(piece, defects.vertices);
   for (const Edge& edge : defects.edges) {
     Indices star;
     for (const std::uint32_t t : at_vertex.at(edge[0])) {
-      const Tet& tet = mesh.tets[t];
+      const Tet& tet = piece.mesh.tets[t];
       if (std::find(tet.begin(), tet.end(), edge[1]) != tet.end()) star.push_back(t);
     }
-    const Indices classes = classes_around(mesh.tets.data(), faces, star, {edge[0], edge[1]});
+    const Indices classes = classes_around(piece, star, {edge[0], edge[1]});
     Indices sizes(star.size(), 0);
     for (const std::uint32_t c : classes) ++sizes[c];
     const auto largest =
         static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
     for (std::size_t i = 0; i < star.size(); ++i) {
-      if (classes[i] == largest) continue;
-      kept[star[i]] = 0;
-      dropped_at_edge = true;
+      if (classes[i] != largest) result.push_back(star[i]);
     }
   }
-  if (!dropped_at_edge) {
-    for (const auto& entry : defects.tets_of_smaller_fans) {
-      for (const std::uint32_t t : entry.second) kept[t] = 0;
-    }
+  if (!result.empty()) return result;
+  for (const auto& entry : defects.tets_of_smaller_fans) {
+    result.insert(result.end(), entry.second.begin(), entry.second.end());
   }
-  const std::size_t before = mesh.tets.size();
-  keep_tets(mesh, kept);
-  return before - mesh.tets.size();
-}
-
-void remove_unused_vertices(LatticeMesh& mesh) {
-  Indices number(mesh.vertices.size(), 0);
-  for (const Tet& tet : mesh.tets) {
-    for (const std::uint32_t vertex : tet) number[vertex] = 1;
-  }
-  std::uint32_t next = 0;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (number[v] == 0) continue;
-    mesh.vertices[next] = mesh.vertices[v];
-    number[v] = next++;
-  }
-  mesh.vertices.resize(next);
-  for (Tet& tet : mesh.tets) {
-    for (std::uint32_t& vertex : tet) vertex = number[vertex];
-  }
+  return result;
 }
 
 }  // namespace
 
 void repair(LatticeMesh& mesh, bool all_components) {
-  // Every round copies vertices or drops tets, of which there are finitely many.
-  while (!mesh.tets.empty()) {
-    if (!all_components) keep_largest_component(mesh);
-    const FaceTopology faces = face_topology(mesh.tets, mesh.vertices.size());
-    const Defects defects = find_defects(mesh, faces);
+  Workpiece piece(mesh);
+  // Every round but the last drops tets, of which there are finitely many.
+  while (true) {
+    if (!all_components) keep_largest_component(piece);
+    Defects defects = find_defects(piece);
+    if (!defects.vertices.empty()) {
+      copy_vertices(piece, defects.vertices);
+      defects = find_defects(piece);
+    }
     if (defects.vertices.empty()) break;
-    const std::size_t copies = copy_vertices(mesh, faces, defects.vertices);
-    mesh.vertices_copied += copies;
-    if (copies == 0) mesh.tets_dropped += drop_defects(mesh, faces, defects);
+    for (const std::uint32_t t : tets_to_drop(piece, defects)) {
+      mesh.tets_dropped += piece.kept[t];
+      piece.drop(t);
+    }
   }
-  remove_unused_vertices(mesh);
+  piece.compact();
 }
 
 }  // namespace tissue

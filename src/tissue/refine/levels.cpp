@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace tissue {
 
@@ -69,9 +68,13 @@ std::vector<std::uint32_t> density_thresholds(const std::vector<double>& densiti
 }
 
 std::size_t distinct_densities(const std::vector<double>& densities) {
-  std::set<double> distinct;
-  for (const double density : densities) distinct.insert(std::floor(density));
-  return distinct.size();
+  std::vector<std::uint8_t> seen;
+  for (const double density : densities) {
+    const auto whole = static_cast<std::size_t>(std::floor(density));
+    if (whole >= seen.size()) seen.resize(whole + 1, 0);
+    seen[whole] = 1;
+  }
+  return static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
 }
 
 std::vector<std::uint8_t> wished_levels(const std::vector<double>& densities,
