@@ -1,6 +1,6 @@
 # Messages and services. Comes before any target, because catkin sets where targets go.
 set(TISSUE_ROS_PACKAGES
-  diagnostic_updater geometry_msgs roscpp sensor_msgs std_msgs tf2 tf2_geometry_msgs tf2_ros
+  diagnostic_msgs diagnostic_updater geometry_msgs roscpp sensor_msgs std_msgs tf2 tf2_geometry_msgs tf2_ros
   visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS ${TISSUE_ROS_PACKAGES} message_generation)
 

@@ -36,8 +36,7 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
 
   cloud_publisher_ = handle.advertise<sensor_msgs::PointCloud2>("deformed_cloud", 2);
   marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("deformed_markers", 1);
-  status_publisher_ =
-      private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1, true);
+  status_publisher_ = private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1);
   using TetMesh = soft_tissue_sim::TetMesh;
   mesh_subscriber_ = handle.subscribe<TetMesh>(
       "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
@@ -82,6 +81,9 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
     return;
   }
   tool_.reset();
+  last_step_ = {};
+  step_seconds_ = 0.0;
+  markers_are_new_ = true;
   ROS_INFO("deformer_node: took mesh %s of %zu tets", simulation_->mesh.uuid.c_str(),
            simulation_->mesh.tets.size());
 }
@@ -109,18 +111,15 @@ void DeformerNode::take_pose(const geometry_msgs::PoseStamped& pose) {
 }
 
 void DeformerNode::move_to(const geometry_msgs::PoseStamped& pose) {
-  double dt = 0.0;
-  if (tool_) {
-    dt = (pose.header.stamp - stamp_).toSec();
-    // A bag that starts again, or a clock that was set back: the tissue starts again too.
-    if (dt < 0.0) {
-      simulation_->scene.reset();
-      time_jumped_ = true;
-      dt = 0.0;
-    }
+  // A bag that starts again, or a clock that was set back: the tissue starts again too.
+  if (pose.header.stamp < stamp_) {
+    simulation_->scene.reset();
+    time_jumped_ = true;
+    tool_.reset();
   }
+  const double dt = tool_ ? (pose.header.stamp - stamp_).toSec() : 0.0;
   const auto& p = pose.pose.position;
-  const tissue::ToolPose tool = {tissue::Vec3(p.x, p.y, p.z), true};
+  const tissue::ToolPose tool = {tissue::Vec3(p.x, p.y, p.z), std::nullopt};
   const ros::WallTime start = ros::WallTime::now();
   last_step_ = simulation_->scene.step(tool, dt);
   step_seconds_ = (ros::WallTime::now() - start).toSec();
@@ -159,11 +158,11 @@ void DeformerNode::publish_markers() {
   const std::string& frame = simulation_->mesh.frame_id;
   auto markers = level_markers(
       simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return positions[v]; }, frame);
-  if (tool_) {
-    markers.markers.push_back(
-        ball_marker("tool", tool_->position, scene_.tool.radius, 1.0f, frame));
-  }
-  marker_publisher_.publish(markers);
+  markers.markers.push_back(ball_marker("tool", tool_ ? tool_->position : tissue::Vec3::Zero(),
+                                        scene_.tool.radius, 1.0f, frame));
+  if (!tool_) markers.markers.back().action = visualization_msgs::Marker::DELETE;
+  marker_publisher_.publish(markers_are_new_ ? replacing_all(markers) : markers);
+  markers_are_new_ = false;
 }
 
 void DeformerNode::publish_status() {

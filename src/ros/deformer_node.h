@@ -57,6 +57,8 @@ class DeformerNode {
   tissue::StepReport last_step_;
   double step_seconds_ = 0.0;
   bool time_jumped_ = false;
+  // Until they have been published once, markers replace those of the mesh before.
+  bool markers_are_new_ = false;
   std::uint64_t dropped_poses_ = 0, rejected_meshes_ = 0;
 
   tf2_ros::Buffer transforms_;

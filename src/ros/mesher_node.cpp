@@ -58,16 +58,17 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
   ros::NodeHandle build_handle(private_handle);
   build_handle.setCallbackQueue(&build_queue_);
   service_ = build_handle.advertiseService("build_mesh", &MesherNode::serve, this);
-  build_timer_ = build_handle.createTimer(
-      ros::Duration(0.01), [this](const ros::TimerEvent&) { build_by_parameters(); }, true, false);
 
   diagnostics_.setHardwareID("none");
   diagnostics_.add("mesher", this, &MesherNode::diagnose);
-  diagnostics_timer_ = handle.createTimer(
-      ros::Duration(1.0), [this](const ros::TimerEvent&) { diagnostics_.update(); });
+  diagnostics_timer_ = handle.createWallTimer(
+      ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.update(); });
   for (int i = 0; i < 2; ++i) {
     build_threads_.emplace_back([this] {
-      while (!ending_) build_queue_.callOne(ros::WallDuration(0.1));
+      while (!ending_) {
+        build_queue_.callOne(ros::WallDuration(0.1));
+        build_if_wanted();
+      }
     });
   }
 }
@@ -95,28 +96,38 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
     const std::lock_guard<std::mutex> lock(volume_mutex_);
     ready = volume_ != nullptr && (!parameters_.use_mask || mask_ != nullptr);
   }
-  if (parameters_.build_on_volume && ready) {
-    build_timer_.stop();
-    build_timer_.start();
-  }
+  if (parameters_.build_on_volume && ready) build_wanted_ = true;
 }
 
 bool MesherNode::serve(Request& request, Response& response) {
-  const Outcome outcome = build(request, response);
+  const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
+  const Outcome outcome = lock.owns_lock()
+                              ? build(request, response)
+                              : Outcome{ErrorCode::kBusy, "build_mesh: a build is running"};
+  if (!outcome.ok()) report("build_mesh", outcome);
   response.result = to_message(outcome.code, outcome.sentence);
   // Returning false would lose the response.
   return true;
 }
 
-Outcome MesherNode::build(const Request& request, Response& response) {
+void MesherNode::build_if_wanted() {
+  if (!build_wanted_) return;
+  const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
+  // Whoever builds now looks again when it is done.
+  if (!lock.owns_lock() || !build_wanted_.exchange(false)) return;
+  Response unused;
   const Outcome outcome = guarded([&] {
-    const std::unique_lock<std::mutex> busy(build_mutex_, std::try_to_lock);
-    if (!busy.owns_lock()) {
-      throw InputError(ErrorCode::kBusy, "build_mesh: a build is running");
-    }
+    const Outcome built = build(request_from_parameters(), unused);
+    if (!built.ok()) throw InputError(built.code, built.sentence);
+  });
+  if (!outcome.ok()) report("build on volume", outcome);
+}
+
+Outcome MesherNode::build(const Request& request, Response& response) {
+  return guarded([&] {
     VolumePtr volume, mask;
     {
-      const std::lock_guard<std::mutex> lock(volume_mutex_);
+      const std::lock_guard<std::mutex> volume_lock(volume_mutex_);
       volume = volume_;
       mask = request.use_mask ? mask_ : nullptr;
     }
@@ -138,26 +149,32 @@ Outcome MesherNode::build(const Request& request, Response& response) {
     ROS_INFO("mesher_node: %zu tets, %zu vertices, mesh %s", mesh.tets.size(), mesh.vertices.size(),
              mesh.uuid.c_str());
   });
-  if (!outcome.ok()) report("build_mesh", outcome);
-  return outcome;
 }
 
-void MesherNode::build_by_parameters() {
+MesherNode::Request MesherNode::request_from_parameters() const {
+  const auto natural = [](const char* name, int value) {
+    if (value >= 0) return static_cast<std::uint32_t>(value);
+    throw InputError(ErrorCode::kParam,
+                     std::string("~") + name + ": " + std::to_string(value) + " is negative");
+  };
   Request request;
   request.use_mask = parameters_.use_mask;
   request.iso_value = parameters_.iso_value;
   request.spacing = parameters_.spacing;
-  const auto natural = [](int value) { return static_cast<std::uint32_t>(std::max(value, 0)); };
-  request.initial_tetrahedra = natural(parameters_.initial_tetrahedra);
-  request.level_sections = natural(parameters_.level_sections);
-  request.base_level = natural(parameters_.base_level);
-  request.smooth_levels = natural(parameters_.smooth_levels);
-  Response unused;
-  build(request, unused);
+  request.initial_tetrahedra = natural("initial_tetrahedra", parameters_.initial_tetrahedra);
+  request.level_sections = natural("level_sections", parameters_.level_sections);
+  request.base_level = natural("base_level", parameters_.base_level);
+  request.smooth_levels = natural("smooth_levels", parameters_.smooth_levels);
+  return request;
 }
 
 void MesherNode::publish(const tissue::TetMesh& mesh) {
   auto message = boost::make_shared<soft_tissue_sim::TetMesh>(to_message(mesh));
+  if (ros::serialization::serializationLength(*message) > kMaxMessageBytes) {
+    throw InputError(ErrorCode::kTooLarge, "mesh: " + std::to_string(mesh.tets.size()) +
+                                               " tets do not fit into one message; mesh the file "
+                                               "with mesh_volume");
+  }
   message->header.stamp = ros::Time::now();
   mesh_publisher_.publish(message);
   const DisplayMesh display =

@@ -34,8 +34,10 @@ class MesherNode {
 
   void take_volume(const soft_tissue_sim::Volume& message, const char* name, VolumePtr& slot);
   bool serve(Request& request, Response& response);
+  /// The caller holds build_mutex_.
   Outcome build(const Request& request, Response& response);
-  void build_by_parameters();
+  void build_if_wanted();
+  Request request_from_parameters() const;
   void publish(const tissue::TetMesh& mesh);
   void report(const char* what, const Outcome& outcome);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
@@ -52,10 +54,9 @@ class MesherNode {
   ros::Publisher mesh_publisher_, marker_publisher_, density_publisher_;
   ros::Subscriber volume_subscriber_, mask_subscriber_;
   ros::ServiceServer service_;
-  ros::Timer build_timer_;
   diagnostic_updater::Updater diagnostics_;
-  ros::Timer diagnostics_timer_;
-  std::atomic<bool> ending_{false};
+  ros::WallTimer diagnostics_timer_;
+  std::atomic<bool> build_wanted_{false}, ending_{false};
   std::vector<std::thread> build_threads_;
 };
 

@@ -17,7 +17,8 @@ struct VolumeNodeParameters {
   std::vector<double> crop;
   std::vector<double> tumour;
   std::string mask_file;
-  double mask_above = -1.0;
+  bool mask_by_threshold = false;
+  double mask_above = 0.0;
   int mask_opening = 0;
   double mask_smoothing = 0.0;
 
@@ -29,6 +30,7 @@ struct VolumeNodeParameters {
     visitor("crop", crop);
     visitor("tumour", tumour);
     visitor("mask_file", mask_file);
+    visitor("mask_by_threshold", mask_by_threshold);
     visitor("mask_above", mask_above);
     visitor("mask_opening", mask_opening);
     visitor("mask_smoothing", mask_smoothing);

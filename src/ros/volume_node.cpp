@@ -15,9 +15,6 @@ using tissue::ErrorCode;
 using tissue::InputError;
 using tissue::Vec3;
 
-// A larger message cuts its subscriber off for good.
-constexpr std::size_t kMaxMessageBytes = 1000000000;
-
 void require_numbers(const char* name, const std::vector<double>& values, std::size_t count) {
   if (values.size() == count) return;
   throw InputError(ErrorCode::kParam, std::string("~") + name + ": has " +
@@ -34,7 +31,7 @@ std::optional<tissue::Volume> prepare_mask(const VolumeNodeParameters& parameter
       throw InputError(ErrorCode::kSizeMismatch, "~mask_file: '" + parameters.mask_file +
                                                      "' does not lie on the volume's grid");
     }
-  } else if (parameters.mask_above >= 0.0) {
+  } else if (parameters.mask_by_threshold) {
     mask = tissue::threshold_mask(volume, parameters.mask_above);
   }
   if (!mask) return mask;
@@ -74,13 +71,16 @@ PreparedVolume prepare_volume(const VolumeNodeParameters& parameters) {
                                             "' is not one of density hounsfield label");
   }
   tissue::check_volume(volume);
+  // The mask is the organ's, whatever is put into it, and lies on the file's grid before both are
+  // cropped.
+  prepared.mask = prepare_mask(parameters, volume);
   if (!parameters.crop.empty()) {
     require_numbers("crop", parameters.crop, 6);
     const double* c = parameters.crop.data();
-    volume = crop_volume(volume, {Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5])});
+    const tissue::Box box = {Vec3(c[0], c[1], c[2]), Vec3(c[3], c[4], c[5])};
+    volume = crop_volume(volume, box);
+    if (prepared.mask) prepared.mask = crop_volume(*prepared.mask, box);
   }
-  // The mask is the organ's, whatever is put into it.
-  prepared.mask = prepare_mask(parameters, volume);
   if (!parameters.tumour.empty()) {
     require_numbers("tumour", parameters.tumour, 5);
     const double* t = parameters.tumour.data();

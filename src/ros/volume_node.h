@@ -16,8 +16,8 @@ struct PreparedVolume {
   std::optional<tissue::Volume> mask;
 };
 
-/// Reads and edits as the parameters say: crop, then tumour, then mask, its opening and its
-/// smoothing. Throws tissue::InputError.
+/// Reads and edits as the parameters say: mask, its opening and smoothing, then crop, then
+/// tumour. Throws tissue::InputError.
 PreparedVolume prepare_volume(const VolumeNodeParameters& parameters);
 
 /// Publishes a volume, its mask and where the tumour was put, latched. Throws tissue::InputError,

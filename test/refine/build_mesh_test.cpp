@@ -204,6 +204,8 @@ TEST(BuildMesh, M1_to_M4_RefusesBadRequestsByFieldAndValue) {
       {"E_PARAM: iso_value: nan", [nan](MeshOptions& o) { o.iso_value = nan; }},
       {"E_PARAM: spacing: -1 m", [](MeshOptions& o) { o.spacing = -1.0; }},
       {"E_PARAM: spacing: inf m", [](MeshOptions& o) { o.spacing = HUGE_VAL; }},
+      {"E_TOO_MANY_TETS: spacing: 1e-05 m would make about",
+       [](MeshOptions& o) { o.spacing = 1e-5; }},
       {"E_PARAM: d_max: nan", [nan](MeshOptions& o) { o.levels.d_max = nan; }},
       {"E_PARAM: base_level: -1", [](MeshOptions& o) { o.levels.base_level = -1; }},
       {"E_PARAM: window: 5 to 5",

@@ -4,6 +4,7 @@ import math
 import struct
 import threading
 import unittest
+import xmlrpc.client
 
 import rosgraph
 import rospy
@@ -70,8 +71,15 @@ class BadInput(unittest.TestCase):
         rospy.Subscriber("deformer_node/status", SimulationStatus, cls.statuses.append)
         cls.build = rospy.ServiceProxy("mesher_node/build_mesh", BuildMesh)
         cls.build.wait_for_service(30)
+        cls.pids = cls.node_pids()
         while cls.volume.get_num_connections() < 1 or cls.pose.get_num_connections() < 1:
             rospy.rostime.wallsleep(0.05)
+
+    @classmethod
+    def node_pids(cls):
+        master = rosgraph.Master("/bad_input_test")
+        return {name: xmlrpc.client.ServerProxy(master.lookupNode(name)).getPid("/bad_input_test")[2]
+                for name in ("/mesher_node", "/deformer_node")}
 
     @classmethod
     def take_diagnostics(cls, message):
@@ -89,6 +97,16 @@ class BadInput(unittest.TestCase):
 
     def count(self, part):
         return sum(n for key, n in self.rejected.items() if part in key)
+
+    def settled_count(self, part):
+        """The count once two diagnostics in a row agree on it."""
+        last = None
+        while last != self.count(part):
+            last = self.count(part)
+            rospy.wait_for_message("/diagnostics", DiagnosticArray, timeout=10)
+            rospy.wait_for_message("/diagnostics", DiagnosticArray, timeout=10)
+            rospy.wait_for_message("/diagnostics", DiagnosticArray, timeout=10)
+        return last
 
     def good_mesh(self):
         response = self.build(request())
@@ -122,7 +140,7 @@ class BadInput(unittest.TestCase):
             ("V14", with_fields(header__frame_id="")),
         ]
         for name, volume in bad:
-            before = self.count("volumes rejected")
+            before = self.settled_count("volumes rejected")
             self.volume.publish(volume)
             self.wait_until(lambda: self.count("volumes rejected") == before + 1)
         self.assertEqual(self.good_mesh().uuid, good.uuid)
@@ -188,20 +206,22 @@ class BadInput(unittest.TestCase):
         self.wait_until(lambda: self.good_mesh().uuid == good.uuid)
 
     def test_5_M8_a_second_request_is_answered_busy_while_the_first_runs(self):
-        codes = []
-        slow = threading.Thread(
-            target=lambda: codes.append(self.build(request(spacing=0.0005, level_sections=1)).result.code))
-        slow.start()
-        busy = None
-        while slow.is_alive():
-            result = rospy.ServiceProxy("mesher_node/build_mesh", BuildMesh)(request()).result
-            if result.code == Result.E_BUSY:
-                busy = result
+        # Whichever of the two comes second must be told so; one that slips in before the slow one
+        # does no harm.
+        answers = []
+        def slow():
+            answers.append(self.build(request(spacing=0.0007, level_sections=1)).result)
+        for _ in range(10):
+            thread = threading.Thread(target=slow)
+            thread.start()
+            while thread.is_alive():
+                answers.append(rospy.ServiceProxy("mesher_node/build_mesh", BuildMesh)(request()).result)
+            thread.join()
+            if any(a.code == Result.E_BUSY for a in answers):
                 break
-        slow.join()
-        self.assertIsNotNone(busy)
+        self.assertLessEqual({a.code for a in answers}, {Result.OK, Result.E_BUSY})
+        busy = next(a for a in answers if a.code == Result.E_BUSY)
         self.assertEqual(busy.message, "build_mesh: a build is running")
-        self.assertIn(codes[0], (Result.OK, Result.E_BUSY))
         self.good_mesh()
 
     def send_pose(self, stamp, place=(CENTRE, CENTRE, 100.0), frame="patient", w=1.0):
@@ -235,6 +255,7 @@ class BadInput(unittest.TestCase):
         for i in range(10):
             self.send_pose(time + 0.01 * i, top)
             rospy.rostime.wallsleep(0.01)
+        self.wait_until(lambda: self.send_pose(time + 0.2, top) or self.statuses[-1].moved_vertices > 0)
         self.assertEqual(self.displacement(), 0.0)
         # P2: a quaternion that is nearly one is used.
         pressed = (CENTRE, CENTRE, CENTRE + RADIUS - 1.0)
@@ -277,9 +298,7 @@ class BadInput(unittest.TestCase):
         self.assertEqual(self.statuses[-1].mesh_uuid, good.uuid)
 
     def test_8_both_nodes_are_the_ones_that_were_started(self):
-        nodes = {n for state in rosgraph.Master("/test").getSystemState() for _, names in state for n in names}
-        self.assertIn("/mesher_node", nodes)
-        self.assertIn("/deformer_node", nodes)
+        self.assertEqual(self.node_pids(), self.pids)
 
 
 if __name__ == "__main__":

@@ -45,9 +45,9 @@ void expect_defaults(const YAML::Node& yaml) {
 TEST(Parameters, TheShippedFileHoldsTheDefaultsOfTheCode) {
   const YAML::Node yaml =
       YAML::LoadFile(std::string(TISSUE_SOURCE_DIR) + "/config/parameters.yaml");
-  expect_defaults<VolumeNodeParameters>(yaml["volume"]);
-  expect_defaults<MesherNodeParameters>(yaml["mesher"]);
-  expect_defaults<DeformerNodeParameters>(yaml["deformer"]);
+  expect_defaults<VolumeNodeParameters>(yaml["volume_node"]);
+  expect_defaults<MesherNodeParameters>(yaml["mesher_node"]);
+  expect_defaults<DeformerNodeParameters>(yaml["deformer_node"]);
 }
 
 TEST(Result, HasTheConstantsOfTheCode) {
@@ -144,9 +144,9 @@ TEST(PrepareVolume, NamesTheParameterThatIsWrong) {
             "E_PARAM: ~quantity: 'mass' is not one of density hounsfield label");
   EXPECT_EQ(refused([](P& p) { p.crop = {1, 2}; }), "E_PARAM: ~crop: has 2 numbers, not 6");
   EXPECT_EQ(refused([](P& p) { p.tumour = {1}; }), "E_PARAM: ~tumour: has 1 numbers, not 5");
-  EXPECT_EQ(refused([](P& p) { p.mask_above = 20, p.mask_opening = 99; }).substr(0, 21),
+  EXPECT_EQ(refused([](P& p) { p.mask_by_threshold = true, p.mask_opening = 99; }).substr(0, 21),
             "E_PARAM: mask_opening");
-  EXPECT_EQ(refused([](P& p) { p.mask_above = 20, p.mask_smoothing = -1; }).substr(0, 23),
+  EXPECT_EQ(refused([](P& p) { p.mask_by_threshold = true, p.mask_smoothing = -1; }).substr(0, 23),
             "E_PARAM: mask_smoothing");
 }
 
@@ -155,6 +155,7 @@ TEST(PrepareVolume, CropsMasksAndPutsATumour) {
   parameters.file = std::string(TISSUE_SOURCE_DIR) + "/data/ch2bet.nii.gz";
   parameters.crop = {-0.03, -0.06, -0.01, 0.03, 0.0, 0.05};
   parameters.tumour = {0.0, -0.03, 0.02, 0.01, 255};
+  parameters.mask_by_threshold = true;
   parameters.mask_above = 20;
   const PreparedVolume prepared = prepare_volume(parameters);
   EXPECT_EQ(prepared.volume.grid.size, (tissue::GridSize{61, 61, 61}));

@@ -140,6 +140,11 @@ void expect_conforming(const TetMesh& mesh) {
   // Copies that share an edge have twins on all of it when it is split.
   const std::size_t copied = mesh.statistics.vertices_copied;
   const MeshFindings found = expect_sound(mesh, copied == 0 ? 0 : mesh.vertices.size());
+  std::set<std::tuple<float, float, float>> places;
+  for (std::uint32_t v = 0; v < mesh.lattice_vertices; ++v) {
+    places.insert({mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()});
+  }
+  EXPECT_LE(mesh.lattice_vertices - places.size(), copied);
   EXPECT_NEAR(mesh.statistics.volume, found.tet_volume, 1e-9 * found.tet_volume);
   // The statistics' angles are those of exact positions, the mesh's have been rounded to float.
   EXPECT_NEAR(mesh.statistics.dihedral[0] * 180.0 / M_PI, found.min_dihedral_deg, 0.02);

@@ -2,6 +2,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -99,6 +100,7 @@ TEST(MeshVolume, EndsWithCode2AndASentenceOnEveryBadRequest) {
   for (const auto& [arguments, sentence] : cases) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, 2) << arguments;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
     EXPECT_NE(outcome.output.find(sentence), std::string::npos) << arguments << "\n"
                                                                 << outcome.output;
     EXPECT_FALSE(fs::exists(temporary("tissue_never_written.vtu")));

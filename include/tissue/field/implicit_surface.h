@@ -81,9 +81,18 @@ double bracketed_root(const Function& f, const Vec3& a, const Vec3& b, double f_
     double t = (low * f_b - high * f_a) / (f_b - f_a);
     if (!(t > low && t < high)) t = 0.5 * (low + high);
     const double f_t = f(a + t * (b - a));
-    if (f_t == 0.0 || std::abs(t - previous) < 1e-7) return t;
+    if (f_t == 0.0) return t;
+    const bool root_is_below = (f_t < 0.0) == (f_b < 0.0);
+    // Steps are also short beside a plateau: only a change of sign within a millionth is a root.
+    if (std::abs(t - previous) < 1e-7) {
+      const double beside = std::clamp(root_is_below ? t - 1e-6 : t + 1e-6, low, high);
+      const double f_beside = f(a + beside * (b - a));
+      if (f_beside == 0.0 || (f_beside < 0.0) != (f_t < 0.0)) return t;
+      f_a = f_a < 0.0 ? -1.0 : 1.0;  // Forget the plateau: bisect.
+      f_b = -f_a;
+    }
     previous = t;
-    if ((f_t < 0.0) == (f_b < 0.0)) {
+    if (root_is_below) {
       high = t;
       f_b = f_t;
       if (kept_end == -1) f_a *= 0.5;

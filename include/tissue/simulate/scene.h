@@ -35,8 +35,8 @@ struct SceneDescription {
 /// A tool at one instant.
 struct ToolPose {
   Vec3 position = Vec3::Zero();
-  /// Whether the jaw is closed; a tool without a jaw counts as closed.
-  bool closed = true;
+  /// Whether the jaw is closed; a tool without a jaw takes hold at the first touch in either mode.
+  std::optional<bool> closed;
 };
 
 /// What an effect cost so far.

@@ -16,6 +16,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include <cstdio>
+#include <fstream>
 
 namespace tissue {
 namespace {
@@ -56,8 +57,6 @@ vtkNew<vtkUnstructuredGrid> grid_of(const TetMesh& mesh) {
   }
   grid->SetPoints(points);
   vtkNew<vtkCellArray> cells;
-  cells->AllocateExact(static_cast<vtkIdType>(mesh.tets.size()),
-                       static_cast<vtkIdType>(4 * mesh.tets.size()));
   for (const Tet& tet : mesh.tets) {
     const vtkIdType ids[4] = {tet[0], tet[1], tet[2], tet[3]};
     cells->InsertNextCell(4, ids);
@@ -79,6 +78,12 @@ void write_mesh(const TetMesh& mesh, const std::string& path,
     add_field<vtkDoubleArray>(grid->GetCellData(), field.name, field.values);
   }
   const std::string unfinished = path + ".part";
+  const auto refuse = [&] {
+    std::remove(unfinished.c_str());
+    throw InputError(ErrorCode::kIo, "output: '" + path + "' cannot be written");
+  };
+  // VTK would say so on the terminal.
+  if (!std::ofstream(unfinished)) refuse();
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
   writer->SetFileName(unfinished.c_str());
   writer->SetInputData(grid);
@@ -87,8 +92,7 @@ void write_mesh(const TetMesh& mesh, const std::string& path,
   writer->SetCompressorTypeToNone();
   if (writer->Write() != 1 || writer->GetErrorCode() != 0 ||
       std::rename(unfinished.c_str(), path.c_str()) != 0) {
-    std::remove(unfinished.c_str());
-    throw InputError(ErrorCode::kIo, "output: '" + path + "' cannot be written");
+    refuse();
   }
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kMaxVoxels = std::size_t{1} << 32;
 constexpr double kMinSpacing = 1e-6;
 constexpr double kMaxSpacing = 1.0;
+constexpr double kMaxDistance = 10.0;
 constexpr std::size_t kMaxNameLength = 256;
 constexpr const char* kEncodings = "8UC1 16UC1 16SC1 32SC1 32FC1 64FC1";
 constexpr const char* kAxisNames = "xyz";
@@ -119,8 +120,11 @@ void check_header(const Volume& volume) {
                                                 " m, not between 1e-06 and 1 m");
     }
   }
-  if (!volume.grid.origin.allFinite()) {
-    throw InputError(ErrorCode::kDirection, "volume: origin.position is not finite");
+  // Vertices are published as float32: farther away a tet could be rounded flat.
+  if (!(volume.grid.origin.norm() <= kMaxDistance)) {
+    throw InputError(ErrorCode::kDirection, "volume: origin.position is " +
+                                                to_text(volume.grid.origin.norm()) +
+                                                " m away, more than " + to_text(kMaxDistance));
   }
   if (!std::isfinite(volume.slope) || volume.slope == 0.0 || !std::isfinite(volume.intercept)) {
     throw InputError(ErrorCode::kParam, "volume: rescale_slope " + to_text(volume.slope) +

@@ -8,6 +8,7 @@
 #include "tissue/refine/refine.h"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -35,8 +36,10 @@ void check(const MeshOptions& options) {
     refuse(ErrorCode::kParam,
            "smooth_levels: " + std::to_string(levels.smooth_levels) + " is not within 0 to 100");
   }
-  if (!(levels.d_max >= 1.0 && levels.d_max <= 65535.0)) {
-    refuse(ErrorCode::kParam, "d_max: " + to_text(levels.d_max) + " is not within 1 to 65535");
+  if (!(levels.d_max >= 1.0 && levels.d_max <= 65535.0 &&
+        std::floor(levels.d_max) == levels.d_max)) {
+    refuse(ErrorCode::kParam,
+           "d_max: " + to_text(levels.d_max) + " is not a whole number within 1 to 65535");
   }
   if (!(options.spacing >= 0.0 && std::isfinite(options.spacing))) {
     refuse(ErrorCode::kParam, "spacing: " + to_text(options.spacing) + " m is not positive");
@@ -77,20 +80,33 @@ ImplicitSurface surface_for(const std::shared_ptr<const Volume>& volume,
 LatticeMesh stuffed(const ImplicitSurface& surface, const MeshOptions& options) {
   StuffingOptions stuffing;
   stuffing.all_components = options.all_components;
-  stuffing.max_points = 12.0 * static_cast<double>(options.max_tetrahedra);
+  // An organ fills at least a twelfth of its lattice, or is cropped first.
+  stuffing.max_points = 2.0 * static_cast<double>(options.max_tetrahedra);
   stuffing.spacing = options.spacing;
-  if (options.spacing > 0.0) return stuff(surface, stuffing);
-
-  const double wished = options.initial_tetrahedra;
-  stuffing.spacing = std::cbrt(12.0 * voxel_volume_inside(surface) / wished);
-  LatticeMesh mesh;
-  for (int round = 0; round < 6; ++round) {
-    mesh = stuff(surface, stuffing);
-    const double ratio = static_cast<double>(mesh.tets.size()) / wished;
-    if (std::abs(ratio - 1.0) <= 0.02) break;
-    stuffing.spacing *= std::cbrt(ratio);
+  // A lattice tet has a volume of spacing³/12.
+  const double volume_of_twelve = 12.0 * voxel_volume_inside(surface);
+  if (options.spacing > 0.0) {
+    const double expected = volume_of_twelve / std::pow(options.spacing, 3);
+    if (expected > static_cast<double>(options.max_tetrahedra)) {
+      refuse(ErrorCode::kTooManyTets,
+             "spacing: " + to_text(options.spacing) + " m would make about " + to_text(expected) +
+                 " initial tets, the limit is " + std::to_string(options.max_tetrahedra));
+    }
+    return stuff(surface, stuffing);
   }
-  return mesh;
+  const double wished = options.initial_tetrahedra;
+  stuffing.spacing = std::cbrt(volume_of_twelve / wished);
+  LatticeMesh nearest;
+  double smallest_gap = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 6 && smallest_gap > 0.02; ++round) {
+    LatticeMesh mesh = stuff(surface, stuffing);
+    const double ratio = static_cast<double>(mesh.tets.size()) / wished;
+    stuffing.spacing *= std::cbrt(ratio);
+    if (std::abs(ratio - 1.0) >= smallest_gap) continue;
+    smallest_gap = std::abs(ratio - 1.0);
+    nearest = std::move(mesh);
+  }
+  return nearest;
 }
 
 DensityWindow window_for(const Volume& volume, const ImplicitSurface& surface,

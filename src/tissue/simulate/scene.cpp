@@ -54,19 +54,19 @@ class Scene::Implementation {
     if (phase_ == Phase::kHeld && must_release(tool)) release();
     if (phase_ == Phase::kRecovering) recover(dt);
     // A tool whose jaw was closed all along does not take hold of what it passes.
-    const bool may_take =
-        tool && tool->closed && (!scene_.tool.grasps || !was_closed_ || !had_tool_);
+    const bool closed = tool && tool->closed.value_or(true);
+    const bool just_closed = closed && !was_closed_;
+    const bool may_take = closed && (!scene_.tool.grasps || !tool->closed || just_closed);
     if (phase_ == Phase::kRest && may_take) take(*tool);
     if (phase_ == Phase::kHeld) report.clamped = follow(*tool, dt);
-    had_tool_ = tool.has_value();
-    was_closed_ = tool && tool->closed;
-    report.moved_vertices = phase_ == Phase::kRest ? 0 : field_.vertices.size();
+    was_closed_ = closed;
+    report.moved_vertices = field_.vertices.size();
     return report;
   }
 
   void reset() {
     put_to_rest();
-    had_tool_ = false;
+    was_closed_ = false;
   }
 
   const State& state() const { return state_; }
@@ -106,7 +106,7 @@ class Scene::Implementation {
   }
 
   bool must_release(const std::optional<ToolPose>& tool) const {
-    if (!tool || !tool->closed) return true;
+    if (!tool || !tool->closed.value_or(true)) return true;
     const Vec3 target = body_->rest[target_].cast<double>();
     return (tool->position - target).norm() > scene_.push.range;
   }
@@ -179,7 +179,6 @@ class Scene::Implementation {
   Vec3 displacement_ = Vec3::Zero();
   double held_seconds_ = 0.0;
   double recovering_seconds_ = 0.0;
-  bool had_tool_ = false;
   bool was_closed_ = false;
   PushField<float> field_;
   std::optional<FoldGuard> guard_;

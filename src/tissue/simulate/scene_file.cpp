@@ -121,7 +121,12 @@ SceneDescription scene_from(const YamlReader& file) {
     file.at("model").refuse(ErrorCode::kScene,
                             "'" + scene.model + "' is not a model; closed_form is");
   }
-  if (file.has("element_order")) file.at("element_order").number(1.0, 2.0);
+  if (file.has("element_order")) {
+    const double order = file.at("element_order").number(1.0, 2.0);
+    if (order != 1.0 && order != 2.0) {
+      file.at("element_order").refuse(ErrorCode::kParam, "is neither 1 nor 2");
+    }
+  }
   if (file.has("range")) scene.push.range = file.at("range").number(0.0, 10.0, true);
   if (file.has("literal")) scene.push.literal = file.at("literal").flag();
   if (file.has("rise_time")) scene.rise_time = file.at("rise_time").number(0.0, 3600.0);
