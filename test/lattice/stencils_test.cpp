@@ -1,11 +1,13 @@
 #include "tissue/lattice/stencils.h"
 
+#include "tissue/base/quality.h"
 #include "tissue/base/tet_mesh.h"
 #include "tissue/lattice/bcc_lattice.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace {
 
@@ -88,6 +90,34 @@ TEST(FillTet, FillsExactlyWhatIsInside) {
       EXPECT_NEAR(filled_volume(tet, signs), part * 8.0 / 12.0, 1e-12) << "signs " << code;
     }
   }
+}
+
+TEST(FillTet, KeepsItsAnglesForCutsAsNearToCornersAsWarpingLeavesThem) {
+  // Cuts lie no nearer to an end than 0.285 of a long edge and 0.399 of a short one.
+  std::mt19937 random(4);
+  DihedralRange worst;
+  for (int round = 0; round < 20000; ++round) {
+    const BccTet& tet = bcc_tets()[random() % 12];
+    std::array<Vec3, 10> x;
+    for (int i = 0; i < 4; ++i) {
+      x[i] = Vec3(tet.corners[i][0], tet.corners[i][1], tet.corners[i][2]);
+    }
+    for (int e = 0; e < 6; ++e) {
+      const auto [a, b] = kTetEdges[e];
+      const double alpha = (a ^ b) == 2 ? 0.285 : 0.399;
+      const double t = random() % 2 == 0 ? alpha : 1.0 - alpha;
+      x[4 + e] = x[a] + t * (x[b] - x[a]);
+    }
+    std::array<int, 4> signs{};
+    for (int& sign : signs) sign = random() % 2 == 0 ? -1 : 1;
+    const Stencil stencil = fill_tet(signs, tet.corners);
+    for (int t = 0; t < stencil.count; ++t) {
+      const auto& p = stencil.tets[t];
+      worst.include(dihedral_range(x[p[0]], x[p[1]], x[p[2]], x[p[3]]));
+    }
+  }
+  EXPECT_GE(worst.min_angle() * 180.0 / M_PI, 10.7);
+  EXPECT_LE(worst.max_angle() * 180.0 / M_PI, 164.8);
 }
 
 }  // namespace
