@@ -1,4 +1,11 @@
 # The nodes. The ROS adapters are the only code that sees ROS headers.
+# PCL's headers are heavy and bring libraries of their own.
+find_package(PCL REQUIRED COMPONENTS common io)
+add_library(tissue_point_file src/ros/point_file.cpp)
+target_include_directories(tissue_point_file PRIVATE src SYSTEM PRIVATE ${PCL_INCLUDE_DIRS})
+target_compile_definitions(tissue_point_file PRIVATE ${PCL_DEFINITIONS})
+target_link_libraries(tissue_point_file PUBLIC tissue_base PRIVATE ${PCL_LIBRARIES})
+
 add_library(tissue_ros
   src/ros/convert.cpp
   src/ros/deformer_node.cpp
@@ -8,7 +15,9 @@ add_library(tissue_ros
   src/ros/pose_input.cpp
   src/ros/volume_node.cpp)
 target_include_directories(tissue_ros PUBLIC src SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
-target_link_libraries(tissue_ros PUBLIC tissue_refine tissue_simulate ${catkin_LIBRARIES})
+target_link_libraries(tissue_ros PUBLIC
+  tissue_refine tissue_simulate tissue_triangle_surface tissue_mesh_file tissue_point_file
+  ${catkin_LIBRARIES})
 add_dependencies(tissue_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
 foreach(node volume_node mesher_node deformer_node)
@@ -21,7 +30,7 @@ install(TARGETS
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS
     tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_refine tissue_ros
-    tissue_simulate
+    tissue_point_file tissue_simulate tissue_triangle_surface
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
 install(DIRECTORY include/tissue DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})

@@ -144,6 +144,8 @@ soft_tissue_sim::MeshStatistics to_message(const tissue::MeshStatistics& statist
   message.max_dihedral = statistics.dihedral[1];
   message.surface_error_mean = statistics.surface_error[0];
   message.surface_error_max = statistics.surface_error[1];
+  message.boundary_vertices = statistics.boundary_vertices;
+  message.boundary_vertices_astray = statistics.boundary_vertices_astray;
   message.volume = statistics.volume;
   message.border_touched = statistics.border_touched;
   message.components_dropped = statistics.components_dropped;

@@ -2,8 +2,15 @@
 
 #include "ros/convert.h"
 #include "ros/markers.h"
+#include "ros/point_file.h"
+#include "tissue/base/mesh_file.h"
+#include "tissue/base/safe_path.h"
+#include "tissue/field/triangle_surface.h"
 
 #include <soft_tissue_sim/TetMesh.h>
+
+#include <cstdlib>
+#include <filesystem>
 
 namespace tissue_ros {
 namespace {
@@ -11,28 +18,63 @@ namespace {
 using tissue::ErrorCode;
 using tissue::InputError;
 
-tissue::MeshOptions options_from(const soft_tissue_sim::BuildMesh::Request& request,
-                                 const MesherNodeParameters& parameters) {
-  if (!request.method.empty() && request.method != "density") {
-    throw InputError(ErrorCode::kParam,
-                     "method: '" + request.method.substr(0, 40) + "' is not density");
+tissue::Method method_from(const std::string& name) {
+  if (name.empty() || name == "density") return tissue::Method::kDensity;
+  if (name == "uniform") return tissue::Method::kUniform;
+  if (name == "surface") return tissue::Method::kSurface;
+  throw InputError(ErrorCode::kParam,
+                   "method: '" + name.substr(0, 40) + "' is not density, uniform or surface");
+}
+
+template <class Request>
+std::map<std::int64_t, double> label_densities_from(const Request& request) {
+  if (request.labels.size() != request.label_densities.size()) {
+    throw InputError(ErrorCode::kSizeMismatch,
+                     "label_densities: " + std::to_string(request.label_densities.size()) +
+                         " for " + std::to_string(request.labels.size()) + " labels");
   }
+  std::map<std::int64_t, double> densities;
+  for (std::size_t i = 0; i < request.labels.size(); ++i) {
+    densities[request.labels[i]] = request.label_densities[i];
+  }
+  return densities;
+}
+
+template <class Request>
+tissue::Component component_from(const Request& request) {
+  tissue::Component component;
+  if (request.all_components) component.choice = tissue::Component::Choice::kAll;
+  if (request.component_at_place) {
+    component.choice = tissue::Component::Choice::kNearest;
+    const auto& place = request.component_place;
+    component.place = {place.x, place.y, place.z};
+  }
+  return component;
+}
+
+template <class Request>
+tissue::MeshOptions options_from(const Request& request, const MesherNodeParameters& parameters) {
   const auto small = [](std::uint32_t value) {
     return static_cast<int>(std::min<std::uint32_t>(value, 1000000));
   };
   tissue::MeshOptions options;
+  options.method = method_from(request.method);
   options.iso_value = request.iso_value;
   options.spacing = request.spacing;
+  options.target_tetrahedra = request.target_tetrahedra;
   options.initial_tetrahedra = request.initial_tetrahedra;
   options.levels.sections = small(request.level_sections);
   options.levels.base_level = small(request.base_level);
   options.levels.smooth_levels = small(request.smooth_levels);
+  options.keep_interfaces = request.keep_interfaces;
+  options.project_boundary = request.project_boundary;
   if (request.d_max != 0.0) options.levels.d_max = request.d_max;
   // Not equal also where one of them is not a number, which is then refused by name.
   if (!(request.window_low == request.window_high)) {
     options.window = {{request.window_low, request.window_high}};
   }
-  options.all_components = request.all_components;
+  options.label_densities = label_densities_from(request);
+  options.component = component_from(request);
   options.max_tetrahedra = static_cast<std::uint64_t>(std::max(parameters.max_tetrahedra, 1));
   options.threads = parameters.threads;
   return options;
@@ -57,7 +99,13 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
 
   ros::NodeHandle build_handle(private_handle);
   build_handle.setCallbackQueue(&build_queue_);
-  service_ = build_handle.advertiseService("build_mesh", &MesherNode::serve, this);
+  services_ = {build_handle.advertiseService("build_mesh", &MesherNode::serve, this),
+               build_handle.advertiseService("save_mesh", &MesherNode::save, this),
+               build_handle.advertiseService("load_mesh", &MesherNode::load, this)};
+  action_ = std::make_unique<ActionServer>(
+      build_handle, "build", [this](const Goal& goal) { pursue(goal); },
+      [this](const Goal& goal) { cancel(goal); }, false);
+  action_->start();
 
   diagnostics_.setHardwareID("none");
   diagnostics_.add("mesher", this, &MesherNode::diagnose);
@@ -75,6 +123,7 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
 
 MesherNode::~MesherNode() {
   ending_ = true;
+  *cancelled_ = true;
   for (std::thread& thread : build_threads_) thread.join();
 }
 
@@ -82,7 +131,7 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
                              VolumePtr& slot) {
   const Outcome outcome = guarded([&] {
     auto volume = std::make_shared<const tissue::Volume>(from_message(message));
-    const std::lock_guard<std::mutex> lock(volume_mutex_);
+    const std::lock_guard<std::mutex> lock(data_mutex_);
     slot = std::move(volume);
   });
   if (!outcome.ok()) {
@@ -93,62 +142,156 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
            message.depth);
   bool ready = false;
   {
-    const std::lock_guard<std::mutex> lock(volume_mutex_);
+    const std::lock_guard<std::mutex> lock(data_mutex_);
     ready = volume_ != nullptr && (!parameters_.use_mask || mask_ != nullptr);
   }
   if (parameters_.build_on_volume && ready) build_wanted_ = true;
 }
 
 bool MesherNode::serve(Request& request, Response& response) {
-  const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
-  const Outcome outcome = lock.owns_lock()
-                              ? build(request, response)
-                              : Outcome{ErrorCode::kBusy, "build_mesh: a build is running"};
-  if (!outcome.ok()) report("build_mesh", outcome);
-  response.result = to_message(outcome.code, outcome.sentence);
+  build(request, response, nullptr);
   // Returning false would lose the response.
   return true;
 }
 
+void MesherNode::pursue(Goal goal) {
+  goal.setAccepted();
+  soft_tissue_sim::BuildMeshResult result;
+  build(*goal.getGoal(), result, [&](const tissue::Progress& progress) {
+    soft_tissue_sim::BuildMeshFeedback feedback;
+    feedback.stage = progress.stage;
+    feedback.fraction = progress.fraction;
+    feedback.tetrahedra = progress.tetrahedra;
+    goal.publishFeedback(feedback);
+  });
+  const std::string& sentence = result.result.message;
+  switch (static_cast<ErrorCode>(result.result.code)) {
+    case ErrorCode::kOk: goal.setSucceeded(result, sentence); break;
+    case ErrorCode::kCancelled: goal.setCanceled(result, sentence); break;
+    default: goal.setAborted(result, sentence);
+  }
+}
+
+void MesherNode::cancel(Goal goal) {
+  const actionlib_msgs::GoalStatus status = goal.getGoalStatus();
+  // The one goal that is being pursued; others have been answered already.
+  if (status.status == actionlib_msgs::GoalStatus::PREEMPTING) *cancelled_ = true;
+}
+
 void MesherNode::build_if_wanted() {
   if (!build_wanted_) return;
-  const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
-  // Whoever builds now looks again when it is done.
-  if (!lock.owns_lock() || !build_wanted_.exchange(false)) return;
+  {
+    const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
+    // Whoever builds now looks again when it is done.
+    if (!lock.owns_lock() || !build_wanted_.exchange(false)) return;
+  }
   Response unused;
-  const Outcome outcome = guarded([&] {
-    const Outcome built = build(request_from_parameters(), unused);
-    if (!built.ok()) throw InputError(built.code, built.sentence);
-  });
+  const Outcome outcome = guarded([&] { build(request_from_parameters(), unused, nullptr); });
   if (!outcome.ok()) report("build on volume", outcome);
 }
 
-Outcome MesherNode::build(const Request& request, Response& response) {
-  return guarded([&] {
-    VolumePtr volume, mask;
-    {
-      const std::lock_guard<std::mutex> volume_lock(volume_mutex_);
-      volume = volume_;
-      mask = request.use_mask ? mask_ : nullptr;
-    }
-    if (volume == nullptr) {
-      throw InputError(ErrorCode::kNoVolume, "build_mesh: no volume has arrived yet");
-    }
-    if (request.use_mask && mask == nullptr) {
-      throw InputError(ErrorCode::kNoVolume, "use_mask: no mask has arrived yet");
-    }
-    const tissue::TetMesh mesh =
-        tissue::build_mesh(volume, mask, options_from(request, parameters_)).mesh;
+template <class Asked, class Answer>
+void MesherNode::build(const Asked& request, Answer& answer,
+                       const std::function<void(const tissue::Progress&)>& report_progress) {
+  const Outcome outcome = guarded([&] {
+    const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
+    if (!lock.owns_lock()) throw InputError(ErrorCode::kBusy, "build_mesh: a build is running");
+    *cancelled_ = ending_.load();
+    tissue::Run run;
+    run.report = report_progress;
+    run.cancelled = cancelled_;
+    const auto mesh = std::make_shared<const tissue::TetMesh>(mesh_for(request, run));
+    run.go_on();
     publish(mesh);
     ++built_;
-    response.statistics = to_message(mesh.statistics);
-    if (request.return_mesh) response.mesh = to_message(mesh);
-    if (mesh.statistics.distinct_densities == 1) {
+    answer.statistics = to_message(mesh->statistics);
+    if (request.return_mesh) answer.mesh = to_message(*mesh);
+    if (mesh->statistics.distinct_densities == 1) {
       ROS_INFO("mesher_node: 1 distinct value: every tet has the same level");
     }
-    ROS_INFO("mesher_node: %zu tets, %zu vertices, mesh %s", mesh.tets.size(), mesh.vertices.size(),
-             mesh.uuid.c_str());
+    ROS_INFO("mesher_node: %zu tets, %zu vertices, mesh %s", mesh->tets.size(),
+             mesh->vertices.size(), mesh->uuid.c_str());
   });
+  if (!outcome.ok()) report("build_mesh", outcome);
+  answer.result = to_message(outcome.code, outcome.sentence);
+}
+
+template <class Asked>
+tissue::TetMesh MesherNode::mesh_for(const Asked& request, const tissue::Run& run) const {
+  VolumePtr volume, mask;
+  {
+    const std::lock_guard<std::mutex> lock(data_mutex_);
+    volume = volume_;
+    mask = request.use_mask ? mask_ : nullptr;
+  }
+  if (volume == nullptr) {
+    throw InputError(ErrorCode::kNoVolume, "build_mesh: no volume has arrived yet");
+  }
+  if (request.use_mask && mask == nullptr) {
+    throw InputError(ErrorCode::kNoVolume, "use_mask: no mask has arrived yet");
+  }
+  const tissue::MeshOptions options = options_from(request, parameters_);
+  if (request.surface_file.empty()) return tissue::build_mesh(volume, mask, options, run).mesh;
+  if (request.use_mask) {
+    throw InputError(ErrorCode::kParam, "surface_file: use_mask is set too; one is the organ");
+  }
+  const std::string path = tissue::confined_path(folder(), request.surface_file, true);
+  return tissue::build_mesh(volume,
+                            tissue::surface_of_triangles(tissue::read_surface(path), volume->grid),
+                            options, run)
+      .mesh;
+}
+
+bool MesherNode::save(FileRequest& request, FileResponse& response) {
+  const Outcome outcome = guarded([&] {
+    MeshPtr mesh;
+    {
+      const std::lock_guard<std::mutex> lock(data_mutex_);
+      mesh = mesh_;
+    }
+    const std::string path = tissue::confined_path(folder(), request.path, false);
+    if (mesh == nullptr) {
+      throw InputError(ErrorCode::kNoVolume, "save_mesh: there is no mesh yet");
+    }
+    if (std::filesystem::path(path).extension() == ".pcd") {
+      write_points(*mesh, path);
+    } else {
+      tissue::write_mesh(*mesh, path);
+    }
+    response.uuid = mesh->uuid;
+  });
+  if (!outcome.ok()) report("save_mesh", outcome);
+  response.result = to_message(outcome.code, outcome.sentence);
+  return true;
+}
+
+bool MesherNode::load(FileRequest& request, FileResponse& response) {
+  const Outcome outcome = guarded([&] {
+    const std::string path = tissue::confined_path(folder(), request.path, true);
+    const auto mesh =
+        std::make_shared<const tissue::TetMesh>(tissue::read_mesh(path, /*only_own=*/true));
+    publish(mesh);
+    response.uuid = mesh->uuid;
+  });
+  if (!outcome.ok()) report("load_mesh", outcome);
+  response.result = to_message(outcome.code, outcome.sentence);
+  return true;
+}
+
+std::string MesherNode::folder() const {
+  namespace fs = std::filesystem;
+  const char* home = std::getenv("HOME");
+  const char* ros_home = std::getenv("ROS_HOME");
+  const fs::path root =
+      ros_home != nullptr ? fs::path(ros_home) : fs::path(home != nullptr ? home : "/tmp") / ".ros";
+  const fs::path folder =
+      parameters_.folder.empty() ? root / "soft_tissue_sim" : fs::path(parameters_.folder);
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (!fs::is_directory(folder, failed)) {
+    throw InputError(ErrorCode::kPath, "~folder: '" + folder.string() + "' is no folder");
+  }
+  return folder.string();
 }
 
 MesherNode::Request MesherNode::request_from_parameters() const {
@@ -161,14 +304,19 @@ MesherNode::Request MesherNode::request_from_parameters() const {
   request.use_mask = parameters_.use_mask;
   request.iso_value = parameters_.iso_value;
   request.spacing = parameters_.spacing;
+  request.method = parameters_.method;
+  request.target_tetrahedra = natural("target_tetrahedra", parameters_.target_tetrahedra);
   request.initial_tetrahedra = natural("initial_tetrahedra", parameters_.initial_tetrahedra);
+  request.keep_interfaces = parameters_.keep_interfaces;
+  request.project_boundary = parameters_.project_boundary;
   request.level_sections = natural("level_sections", parameters_.level_sections);
   request.base_level = natural("base_level", parameters_.base_level);
   request.smooth_levels = natural("smooth_levels", parameters_.smooth_levels);
   return request;
 }
 
-void MesherNode::publish(const tissue::TetMesh& mesh) {
+void MesherNode::publish(const MeshPtr& built) {
+  const tissue::TetMesh& mesh = *built;
   auto message = boost::make_shared<soft_tissue_sim::TetMesh>(to_message(mesh));
   if (ros::serialization::serializationLength(*message) > kMaxMessageBytes) {
     throw InputError(ErrorCode::kTooLarge, "mesh: " + std::to_string(mesh.tets.size()) +
@@ -185,6 +333,8 @@ void MesherNode::publish(const tissue::TetMesh& mesh) {
   };
   marker_publisher_.publish(replacing_all(level_markers(display, place, mesh.frame_id)));
   density_publisher_.publish(replacing_all(density_markers(display, mesh)));
+  const std::lock_guard<std::mutex> lock(data_mutex_);
+  mesh_ = built;
 }
 
 void MesherNode::report(const char* what, const Outcome& outcome) {

@@ -25,6 +25,8 @@ inline nlohmann::json to_json(const MeshStatistics& statistics) {
           {"distinct_densities", statistics.distinct_densities},
           {"dihedral_deg", {statistics.dihedral[0] * kDegrees, statistics.dihedral[1] * kDegrees}},
           {"surface_error_m", statistics.surface_error},
+          {"boundary_vertices", statistics.boundary_vertices},
+          {"boundary_vertices_astray", statistics.boundary_vertices_astray},
           {"volume_m3", statistics.volume},
           {"border_touched", statistics.border_touched},
           {"components_dropped", statistics.components_dropped},

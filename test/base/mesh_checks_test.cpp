@@ -46,11 +46,11 @@ TEST(CheckMesh, RefusesPositionsAndDensitiesThatAreNotFinite) {
   EXPECT_EQ(refusal([&] { check_mesh(mesh); }), "E_PARAM: mesh: densities[3] is 0");
 }
 
-TEST(CheckMesh, RefusesInvertedTets) {
+TEST(CheckMesh, S1_RefusesInvertedTets) {
   TetMesh mesh = two_tets();
   std::swap(mesh.tets[1][0], mesh.tets[1][1]);
   EXPECT_EQ(refusal([&] { check_mesh(mesh); }),
-            "E_MESH_QUALITY: mesh: 1 tets are flat or inverted, the first is 1");
+            "E_MESH_QUALITY: mesh: 1 tets are flat or inverted: 1");
 }
 
 TEST(CheckMesh, RefusesAFaceOfThreeTets) {

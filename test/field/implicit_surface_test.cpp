@@ -4,6 +4,7 @@
 #include "support/shapes.h"
 #include "tissue/field/mask.h"
 #include "tissue/field/surface_distance.h"
+#include "tissue/field/surface_search.h"
 
 #include <cmath>
 #include <limits>
@@ -123,9 +124,26 @@ TEST(SurfaceDistance, MeasuresHowFarVerticesAreOff) {
   for (const double radius : {10.0e-3, 10.8e-3, 8.8e-3}) {
     vertices.push_back((centre + radius * Vec3(1, 2, 2).normalized()).cast<float>());
   }
-  const auto [mean, most] = surface_distance(surface, vertices, {{0, 1, 2}}, 4e-3, 1);
-  EXPECT_NEAR(most, 1.2e-3, 0.03e-3);
-  EXPECT_NEAR(mean, 2.0e-3 / 3.0, 0.03e-3);
+  const SurfaceDistance found = surface_distance(surface, vertices, {{0, 1, 2}}, 4e-3, {});
+  EXPECT_NEAR(found.max, 1.2e-3, 0.03e-3);
+  EXPECT_NEAR(found.mean, 2.0e-3 / 3.0, 0.03e-3);
+  EXPECT_EQ(found.vertices, 3u);
+  EXPECT_EQ(found.astray, 2u);
+}
+
+TEST(SurfaceSearch, FindsTheNearestOfWhatLiesAroundWhereTheGradientLeadsNowhere) {
+  // Inside a plateau, whose nearest side lies 2.5 mm away.
+  const auto volume = float_volume(32, [](double x, double y, double z) {
+    return x > 8 && x < 20 && y > 8 && y < 24 && z > 8 && z < 24 ? 100.0 : 0.0;
+  });
+  const ImplicitSurface surface = surface_at_iso(volume, 50.0);
+  with_implicit_function(surface, [](const auto& f) {
+    const SurfacePoint found = search_surface(f, Vec3(17e-3, 16e-3, 16e-3), 1e-3, 8e-3);
+    EXPECT_TRUE(found.found);
+    EXPECT_NEAR(found.distance, 2.5e-3, 1e-5);
+    EXPECT_NEAR(found.place.x(), 19.5e-3, 1e-5);
+    EXPECT_FALSE(search_surface(f, Vec3(14e-3, 16e-3, 16e-3), 1e-3, 3e-3).found);
+  });
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ void expect_sound(const LatticeMesh& lattice) {
 LatticeMesh stuffed(const Shape& shape, double spacing, bool all = false) {
   StuffingOptions options;
   options.spacing = spacing;
-  options.all_components = all;
+  if (all) options.component.choice = Component::Choice::kAll;
   return stuff(surface_at_iso(shape.volume, shape.iso), options);
 }
 

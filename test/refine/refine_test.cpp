@@ -46,7 +46,7 @@ TEST(Refine, AllAtOneLevelIsEightToTheLevelOfEach) {
   for (std::uint8_t level = 0; level < 4; ++level) {
     SCOPED_TRACE(+level);
     const std::vector<std::uint8_t> levels(lattice.mesh.tets.size(), level);
-    const RefinedMesh refined = refine(lattice, levels, 1u << 30, 1);
+    const RefinedMesh refined = refine(lattice, levels, 1u << 30, {1});
     EXPECT_EQ(refined.tets.size(), lattice.mesh.tets.size() << (3 * level));
     expect_sound(lattice, refined);
     // Splitting does not change what is filled.
@@ -61,7 +61,8 @@ TEST(Refine, AllAtOneLevelIsEightToTheLevelOfEach) {
 TEST(Refine, T15_KeepsAnglesFromTheFirstLevelOn) {
   const RefinableLattice lattice = ball_lattice(0.012);
   const auto range = [&](std::uint8_t level) {
-    return refine(lattice, std::vector<std::uint8_t>(lattice.mesh.tets.size(), level), 1u << 30, 1)
+    return refine(lattice, std::vector<std::uint8_t>(lattice.mesh.tets.size(), level), 1u << 30,
+                  {1})
         .dihedral;
   };
   const DihedralRange first = range(1);
@@ -81,7 +82,7 @@ TEST(Refine, ClosesEveryPatternOfRandomLevels) {
     for (auto& level : levels) {
       level = random() % 40 == 0 ? static_cast<std::uint8_t>(random() % 4) : std::uint8_t{0};
     }
-    const RefinedMesh refined = refine(lattice, levels, 1u << 30, 1);
+    const RefinedMesh refined = refine(lattice, levels, 1u << 30, {1});
     expect_sound(lattice, refined);
     for (std::size_t t = 0; t < levels.size(); ++t) {
       EXPECT_GE(refined.lattice_levels[t], levels[t]);
@@ -97,7 +98,7 @@ TEST(Refine, KeepsTetsOfTheLatticesOwnShapeWithin18And162Degrees) {
   std::vector<std::uint8_t> levels(lattice.mesh.tets.size());
   std::mt19937 random(5);
   for (auto& level : levels) level = static_cast<std::uint8_t>(random() % 3);
-  const RefinedMesh refined = refine(lattice, levels, 1u << 30, 1);
+  const RefinedMesh refined = refine(lattice, levels, 1u << 30, {1});
   // Tets that lie within a whole lattice tet are known by their vertices' distance to the surface.
   TetMesh inner = as_mesh(refined, 0);
   inner.tets.clear();
@@ -119,8 +120,8 @@ TEST(Refine, GivesTheSameBitsWithAnyNumberOfThreads) {
   std::vector<std::uint8_t> levels(lattice.mesh.tets.size());
   for (std::size_t t = 0; t < levels.size(); ++t)
     levels[t] = static_cast<std::uint8_t>(t / 700 % 3);
-  const TetMesh one = as_mesh(refine(lattice, levels, 1u << 30, 1), 0);
-  const TetMesh many = as_mesh(refine(lattice, levels, 1u << 30, 4), 0);
+  const TetMesh one = as_mesh(refine(lattice, levels, 1u << 30, {1}), 0);
+  const TetMesh many = as_mesh(refine(lattice, levels, 1u << 30, {4}), 0);
   EXPECT_EQ(mesh_uuid(one), mesh_uuid(many));
   EXPECT_EQ(one.parents, many.parents);
   EXPECT_EQ(one.surface, many.surface);
@@ -129,7 +130,7 @@ TEST(Refine, GivesTheSameBitsWithAnyNumberOfThreads) {
 TEST(Refine, RefusesMoreTetsThanItMayMake) {
   const RefinableLattice lattice = ball_lattice(0.012);
   const std::vector<std::uint8_t> levels(lattice.mesh.tets.size(), 2);
-  EXPECT_EQ(tissue_test::refusal([&] { refine(lattice, levels, 1000, 1); }).substr(0, 15),
+  EXPECT_EQ(tissue_test::refusal([&] { refine(lattice, levels, 1000, {1}); }).substr(0, 15),
             "E_TOO_MANY_TETS");
 }
 

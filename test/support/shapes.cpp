@@ -63,7 +63,38 @@ VolumePtr byte_volume(std::uint32_t size, const std::function<double(double, dou
   });
 }
 
-std::vector<Shape> synthetic_shapes() {
+VolumePtr organ_phantom(const tissue::GridSize& size) {
+  auto volume = std::make_shared<tissue::Volume>();
+  volume->grid.size = size;
+  volume->grid.spacing = tissue::Vec3::Constant(1e-3);
+  std::vector<std::uint8_t> values;
+  values.reserve(volume->grid.voxel_count());
+  std::mt19937 generator(7);
+  const double width = *std::min_element(size.begin(), size.end());
+  for (std::uint32_t z = 0; z < size[2]; ++z) {
+    for (std::uint32_t y = 0; y < size[1]; ++y) {
+      for (std::uint32_t x = 0; x < size[0]; ++x) {
+        // From −1 to 1 across the volume.
+        const double u = 2.0 * x / size[0] - 1.0, v = 2.0 * y / size[1] - 1.0,
+                     w = 2.0 * z / size[2] - 1.0;
+        const double folds = 0.03 * std::sin(17.0 * u) * std::sin(15.0 * v) * std::sin(13.0 * w);
+        const double depth = 0.5 * width * (0.88 + folds - norm(u, v, w));
+        const double texture = 90.0 + 25.0 * std::sin(5.0 * u + 3.0 * v) * std::cos(6.0 * w);
+        const double grain = static_cast<double>(generator() % 32u) - 16.0;
+        const double inside = std::clamp(0.5 + 0.5 * depth, 0.0, 1.0);
+        double value = inside * (texture + grain);
+        const double to_tumour =
+            norm(0.5 * size[0] * (u - 0.2), 0.5 * size[1] * v, 0.5 * size[2] * w);
+        if (to_tumour < width / 7.0) value = 255.0;
+        values.push_back(static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0)));
+      }
+    }
+  }
+  volume->voxels = std::move(values);
+  return volume;
+}
+
+static std::vector<Shape> make_synthetic_shapes() {
   const double c = 31.5;
   return {
       {"ball",
@@ -117,6 +148,11 @@ std::vector<Shape> synthetic_shapes() {
                    }),
        100.0},
   };
+}
+
+const std::vector<Shape>& synthetic_shapes() {
+  static const std::vector<Shape> shapes = make_synthetic_shapes();
+  return shapes;
 }
 
 std::vector<Shape> real_volumes() {

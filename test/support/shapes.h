@@ -17,6 +17,10 @@ VolumePtr float_volume(std::uint32_t size, const std::function<double(double, do
 /// The same, rounded and clamped to 8 bits.
 VolumePtr byte_volume(std::uint32_t size, const std::function<double(double, double, double)>& f);
 
+/// An organ of noisy tissue with a hard ball (255) of a seventh of its width in it, 8 bits, voxels
+/// of 1 mm: the volume on which benchmarks run. Its surface lies at 20; any size.
+VolumePtr organ_phantom(const tissue::GridSize& size);
+
 /// A volume with the surface that is meant by it.
 struct Shape {
   std::string name;
@@ -26,7 +30,7 @@ struct Shape {
 
 /// Ball, torus, thin sheet, two touching balls, noise blob, a cube aligned with the lattice, exact
 /// ties with the iso value.
-std::vector<Shape> synthetic_shapes();
+const std::vector<Shape>& synthetic_shapes();
 
 /// The shipped brain, and where they are at hand the two other brains that were measured.
 std::vector<Shape> real_volumes();

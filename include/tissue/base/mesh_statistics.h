@@ -35,6 +35,9 @@ struct MeshStatistics {
   std::array<double, 2> dihedral = {0.0, 0.0};
   /// Mean and maximum distance of the boundary vertices from the isosurface [m].
   std::array<double, 2> surface_error = {0.0, 0.0};
+  std::uint64_t boundary_vertices = 0;
+  /// Boundary vertices that stay farther than a tenth of a voxel from the isosurface.
+  std::uint64_t boundary_vertices_astray = 0;
   /// Volume inside the boundary [m³].
   double volume = 0.0;
   /// The organ reaches the border of the volume and has been given a cap there.

@@ -20,7 +20,8 @@ void reset_memory_peak();
 class StageClock {
  public:
   StageClock();
-  /// Ends the stage that runs, if any, and starts another.
+  /// Ends the stage that runs, if any, and starts another, or goes on with an earlier one of that
+  /// name.
   void start(const std::string& name);
   /// Ends the stage that runs.
   void stop();
@@ -30,6 +31,7 @@ class StageClock {
 
  private:
   std::vector<StageCost> stages_;
+  std::size_t current_ = 0;
   std::size_t bytes_at_start_;
   double cpu_at_start_ = 0.0;
   double wall_at_start_ = 0.0;

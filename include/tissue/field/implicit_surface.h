@@ -49,11 +49,30 @@ class ImplicitFunction {
   double operator()(const Vec3& place) const {
     return std::max(field(place), cap_slope_ * beyond_border(place));
   }
+  /// The value, and the gradient [1/m along the grid's axes].
+  auto with_gradient(const Vec3& place) const {
+    auto result = sampler_.with_gradient(place);
+    result.value = sign_ * (result.value - iso_);
+    result.gradient *= sign_;
+    const double cap = cap_slope_ * beyond_border(place);
+    if (cap > result.value) {
+      Vec3 beyond = (low_ - place).cwiseMax(place - high_);
+      int axis = 0;
+      beyond.maxCoeff(&axis);
+      result.value = cap;
+      result.gradient = (place[axis] > high_[axis] ? 1.0 : -1.0) * cap_slope_ * Vec3::Unit(axis);
+    }
+    return result;
+  }
   /// The function without the cap.
   double field(const Vec3& place) const { return sign_ * (sampler_(place) - iso_); }
   /// Distance to the outer faces of the voxels along the nearest axis [m], positive outside.
   double beyond_border(const Vec3& place) const {
-    return std::max((low_ - place).maxCoeff(), (place - high_).maxCoeff());
+    double beyond = low_[0] - place[0];
+    for (int axis = 0; axis < 3; ++axis) {
+      beyond = std::max(beyond, std::max(low_[axis] - place[axis], place[axis] - high_[axis]));
+    }
+    return beyond;
   }
 
  private:
@@ -71,21 +90,23 @@ decltype(auto) with_implicit_function(const ImplicitSurface& surface, Body&& bod
 }
 
 /// Where f crosses zero between `a` and `b`, as the fraction of the way from `a`. `f_a` and `f_b`
-/// have opposite signs; the result depends on the order of the ends only in its rounding.
+/// have opposite signs; f changes sign within `tolerance` (a fraction too) of the result, which
+/// depends on the order of the ends no more than that.
 template <class Function>
-double bracketed_root(const Function& f, const Vec3& a, const Vec3& b, double f_a, double f_b) {
+double bracketed_root(const Function& f, const Vec3& a, const Vec3& b, double f_a, double f_b,
+                      double tolerance = 1e-6) {
   // Illinois' variant of regula falsi: superlinear where f is smooth, and safe on steps.
   double low = 0.0, high = 1.0, previous = -1.0;
   int kept_end = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 100 && high - low > tolerance; ++i) {
     double t = (low * f_b - high * f_a) / (f_b - f_a);
     if (!(t > low && t < high)) t = 0.5 * (low + high);
     const double f_t = f(a + t * (b - a));
     if (f_t == 0.0) return t;
     const bool root_is_below = (f_t < 0.0) == (f_b < 0.0);
-    // Steps are also short beside a plateau: only a change of sign within a millionth is a root.
-    if (std::abs(t - previous) < 1e-7) {
-      const double beside = std::clamp(root_is_below ? t - 1e-6 : t + 1e-6, low, high);
+    // Steps are also short beside a plateau: only a change of sign close by is a root.
+    if (std::abs(t - previous) < 0.1 * tolerance) {
+      const double beside = std::clamp(root_is_below ? t - tolerance : t + tolerance, low, high);
       const double f_beside = f(a + beside * (b - a));
       if (f_beside == 0.0 || (f_beside < 0.0) != (f_t < 0.0)) return t;
       f_a = f_a < 0.0 ? -1.0 : 1.0;  // Forget the plateau: bisect.

@@ -3,9 +3,20 @@
 #include "tissue/field/volume.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace tissue {
+
+/// Up to 64 places in the grid's frame [m], one array per coordinate, so that loops over them
+/// vectorise.
+struct PlaceBatch {
+  static constexpr int kCapacity = 64;
+  int count = 0;
+  alignas(64) float x[kCapacity] = {};
+  alignas(64) float y[kCapacity] = {};
+  alignas(64) float z[kCapacity] = {};
+};
 
 /// The trilinear interpolant of the voxels' values; outside the voxel centres the nearest place on
 /// their hull counts.
@@ -52,6 +63,95 @@ class TrilinearSampler {
     return slope_ * (low + fraction[2] * (along_y(corner + step_[2]) - low)) + intercept_;
   }
 
+  struct ValueAndGradient {
+    double value;
+    /// Per metre along the grid's axes.
+    Vec3 gradient;
+  };
+  ValueAndGradient with_gradient(const Vec3& place) const {
+    double fraction[3];
+    int cell[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double index = std::clamp(place[axis] * inverse_spacing_[axis], 0.0, last_[axis]);
+      cell[axis] = std::min(static_cast<int>(index), last_cell_[axis]);
+      fraction[axis] = index - cell[axis];
+    }
+    const T* p = data_ + cell[0] + cell[1] * row_ + cell[2] * slice_;
+    double corner[8];
+    for (int i = 0; i < 8; ++i) {
+      corner[i] = static_cast<double>(
+          p[(i & 1) * step_[0] + (i >> 1 & 1) * step_[1] + (i >> 2) * step_[2]]);
+    }
+    // Blends away one axis after the other; what differs along it is the gradient.
+    const double u = fraction[0], v = fraction[1], w = fraction[2];
+    double along_x[4], dx[4];
+    for (int i = 0; i < 4; ++i) {
+      dx[i] = corner[2 * i + 1] - corner[2 * i];
+      along_x[i] = corner[2 * i] + u * dx[i];
+    }
+    const double dy[2] = {along_x[1] - along_x[0], along_x[3] - along_x[2]};
+    const double low = along_x[0] + v * dy[0], high = along_x[2] + v * dy[1];
+    const Vec3 difference(
+        (1 - w) * ((1 - v) * dx[0] + v * dx[1]) + w * ((1 - v) * dx[2] + v * dx[3]),
+        (1 - w) * dy[0] + w * dy[1], high - low);
+    ValueAndGradient result;
+    result.value = slope_ * (low + w * (high - low)) + intercept_;
+    for (int axis = 0; axis < 3; ++axis) {
+      result.gradient[axis] = slope_ * difference[axis] * inverse_spacing_[axis];
+    }
+    return result;
+  }
+
+  /// What interpolation of these voxels in bulk is done in: floats hold every 16-bit value.
+  using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
+
+  /// The values at all places of a batch, several times faster than one by one, with places good to
+  /// a ten-thousandth of a voxel.
+  void operator()(const PlaceBatch& places, float* values) const {
+    constexpr int kCapacity = PlaceBatch::kCapacity;
+    alignas(64) float fraction[3][kCapacity];
+    alignas(64) int cell[3][kCapacity];
+    const float* coordinates[3] = {places.x, places.y, places.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto scale = static_cast<float>(inverse_spacing_[axis]);
+      const auto last = static_cast<float>(last_[axis]);
+      const int last_cell = last_cell_[axis];
+      for (int i = 0; i < kCapacity; ++i) {
+        const float index = std::min(std::max(coordinates[axis][i] * scale, 0.0f), last);
+        cell[axis][i] = std::min(static_cast<int>(index), last_cell);
+        fraction[axis][i] = index - static_cast<float>(cell[axis][i]);
+      }
+    }
+    // Gathered in the type in which they are stored, two at a time; converting them vectorises.
+    struct Pair {
+      T low, high;
+    };
+    alignas(64) Pair corner[4][kCapacity] = {};
+    for (int i = 0; i < places.count; ++i) {
+      const T* p = data_ + cell[0][i] + cell[1][i] * row_ + cell[2][i] * slice_;
+      const T* edges[4] = {p, p + step_[1], p + step_[2], p + step_[1] + step_[2]};
+      for (int k = 0; k < 4; ++k) {
+        if (step_[0] == 1) {
+          std::memcpy(&corner[k][i], edges[k], sizeof(Pair));
+        } else {
+          corner[k][i] = {*edges[k], *edges[k]};
+        }
+      }
+    }
+    const auto blend = [](Real low, Real high, float t) {
+      return low + static_cast<Real>(t) * (high - low);
+    };
+    const auto slope = static_cast<Real>(slope_), intercept = static_cast<Real>(intercept_);
+    for (int i = 0; i < kCapacity; ++i) {
+      const float u = fraction[0][i], v = fraction[1][i];
+      const auto along_x = [&](int k) {
+        return blend(static_cast<Real>(corner[k][i].low), static_cast<Real>(corner[k][i].high), u);
+      };
+      const Real low = blend(along_x(0), along_x(1), v), high = blend(along_x(2), along_x(3), v);
+      values[i] = static_cast<float>(slope * blend(low, high, fraction[2][i]) + intercept);
+    }
+  }
+
  private:
   const T* data_;
   double slope_, intercept_;
@@ -80,6 +180,21 @@ class NearestSampler {
     }
     const std::size_t i = voxel[0] + grid_->size[0] * (voxel[1] + grid_->size[1] * voxel[2]);
     return slope_ * static_cast<double>(data_[i]) + intercept_;
+  }
+
+  struct ValueAndGradient {
+    double value;
+    Vec3 gradient;
+  };
+  /// A step function has no slope.
+  ValueAndGradient with_gradient(const Vec3& place) const { return {(*this)(place), Vec3::Zero()}; }
+
+  /// The values at all places of a batch.
+  void operator()(const PlaceBatch& places, float* values) const {
+    for (int i = 0; i < places.count; ++i) {
+      const Eigen::Vector3f place(places.x[i], places.y[i], places.z[i]);
+      values[i] = static_cast<float>((*this)(Vec3(place.cast<double>())));
+    }
   }
 
  private:

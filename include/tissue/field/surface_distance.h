@@ -1,18 +1,29 @@
 #pragma once
 
+#include "tissue/base/run.h"
 #include "tissue/field/implicit_surface.h"
 
 #include <vector>
 
 namespace tissue {
 
-/// Mean and maximum distance [m] of a mesh's boundary vertices from the implicit surface: to its
-/// first crossing along the gradient, or where there is none within `reach` [m], to the nearest
-/// crossing in 26 directions; a vertex without any counts as `reach`. `vertices` are places in the
-/// grid's frame.
-std::array<double, 2> surface_distance(const ImplicitSurface& surface,
-                                       const std::vector<Vec3f>& vertices,
-                                       const std::vector<Triangle>& boundary, double reach,
-                                       int threads);
+/// How far a mesh's boundary vertices are from the implicit surface.
+struct SurfaceDistance {
+  std::size_t vertices = 0;
+  double mean = 0.0;  // [m]
+  double max = 0.0;   // [m]
+  /// Vertices farther away than a tenth of the smallest voxel spacing.
+  std::size_t astray = 0;
+};
+
+/// Measured to where search_surface() finds the surface; a vertex for which it finds nothing within
+/// `reach` [m] counts as `reach`. `vertices` are places in the grid's frame.
+SurfaceDistance surface_distance(const ImplicitSurface& surface, const std::vector<Vec3f>& vertices,
+                                 const std::vector<Triangle>& boundary, double reach,
+                                 const Run& run);
+
+/// The vertices that triangles use, ascending. `vertex_count` is that of the mesh.
+std::vector<std::uint32_t> vertices_of(const std::vector<Triangle>& triangles,
+                                       std::size_t vertex_count);
 
 }  // namespace tissue

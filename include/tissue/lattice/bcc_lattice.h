@@ -44,9 +44,11 @@ struct BccLattice {
   }
   Vec3 place(std::int64_t point) const {
     const std::int64_t cell = point / 2;
-    const double half = 0.5 * static_cast<double>(point % 2);
-    const std::int64_t x = cell % size[0], y = cell / size[0] % size[1],
-                       z = cell / size[0] / size[1];
+    return place(cell % size[0], cell / size[0] % size[1], cell / size[0] / size[1],
+                 static_cast<int>(point % 2));
+  }
+  Vec3 place(std::int64_t x, std::int64_t y, std::int64_t z, int parity) const {
+    const double half = 0.5 * parity;
     return origin + spacing * Vec3(static_cast<double>(x) + half, static_cast<double>(y) + half,
                                    static_cast<double>(z) + half);
   }

@@ -42,6 +42,19 @@ std::vector<std::uint8_t> wished_levels(const std::vector<double>& densities,
                                         const std::vector<std::uint32_t>& thresholds,
                                         int base_level);
 
+/// Densities to take levels from where interfaces are kept: a tet whose corners differ by more than
+/// `jump` counts as dense as the softest of them, and any other as its mean says. So a tet that
+/// straddles the border of a tumour takes the level of the tissue around it.
+std::vector<double> softest_at_jumps(std::vector<double> means, const std::vector<Tet>& tets,
+                                     const std::vector<float>& densities, double jump);
+
+/// Levels that ignore density (Park and Choi): the finest for tets that touch the boundary,
+/// `base_level` for all others; raise_levels() grades between them. `on_boundary` is set for
+/// vertices of the boundary.
+std::vector<std::uint8_t> surface_levels(const std::vector<Tet>& tets,
+                                         const std::vector<std::uint8_t>& on_boundary,
+                                         const LevelOptions& options);
+
 /// Σ 8^level, at most 2^64 − 1.
 std::uint64_t predicted_tets(const std::vector<std::uint8_t>& levels);
 

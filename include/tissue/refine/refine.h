@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tissue/base/quality.h"
+#include "tissue/base/run.h"
 #include "tissue/base/topology.h"
 #include "tissue/lattice/stuffing.h"
 
@@ -17,7 +18,7 @@ struct RefinableLattice {
 
 /// Orders the corners of every cut tet so that refinement keeps its shape best, and finds the
 /// neighbourhoods.
-RefinableLattice refinable(LatticeMesh mesh);
+RefinableLattice refinable(LatticeMesh mesh, const Run& run = {});
 
 /// A conforming refined mesh.
 struct RefinedMesh {
@@ -33,7 +34,6 @@ struct RefinedMesh {
   /// Final level of each lattice tet.
   std::vector<std::uint8_t> lattice_levels;
   DihedralRange dihedral;
-  std::size_t tets_promoted = 0;
 };
 
 /// Splits every lattice tet into 8^level parts by Bey's rule and closes the jumps between levels by
@@ -44,6 +44,6 @@ struct RefinedMesh {
 /// `levels` holds one level per lattice tet. Throws InputError E_TOO_MANY_TETS if more than
 /// `max_tets` tets would come out, before they are allocated.
 RefinedMesh refine(const RefinableLattice& lattice, std::vector<std::uint8_t> levels,
-                   std::uint64_t max_tets, int threads);
+                   std::uint64_t max_tets, const Run& run = {});
 
 }  // namespace tissue

@@ -4,19 +4,26 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
+
 namespace tissue {
 
-void parallel_ranges(std::size_t count, int threads,
+void parallel_ranges(std::size_t count, std::size_t grain, const Run& run,
                      const std::function<void(std::size_t begin, std::size_t end)>& body) {
-  constexpr std::size_t kGrain = 512;
-  if (threads == 1 || count <= kGrain) {
-    body(0, count);
+  if (run.threads == 1 || count <= grain) {
+    for (std::size_t begin = 0; begin < count; begin += grain) {
+      run.go_on();
+      body(begin, std::min(begin + grain, count));
+    }
     return;
   }
-  tbb::task_arena arena(threads > 0 ? threads : static_cast<int>(tbb::task_arena::automatic));
+  tbb::task_arena arena(run.threads > 0 ? run.threads
+                                        : static_cast<int>(tbb::task_arena::automatic));
   arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain),
-                      [&](const auto& range) { body(range.begin(), range.end()); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+      run.go_on();
+      body(range.begin(), range.end());
+    });
   });
 }
 

@@ -2,28 +2,55 @@
 
 namespace tissue {
 
-DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 ab = b - a, ac = c - a, ad = d - a;
-  // Outward normals of the faces opposite a, b, c, d; they add up to zero.
+namespace {
+
+// Normals of a tet's faces, their lengths twice the areas, and what angles between faces come from.
+struct Faces {
   std::array<Vec3, 4> normals;
-  normals[1] = ad.cross(ac);
-  normals[2] = ab.cross(ad);
-  normals[3] = ac.cross(ab);
-  normals[0] = -(normals[1] + normals[2] + normals[3]);
-  std::array<double, 4> inverse_length;
+  std::array<double, 4> squared_lengths;
+  double determinant;
+
+  Faces(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    const Vec3 ab = b - a, ac = c - a, ad = d - a;
+    normals[1] = ad.cross(ac);
+    normals[2] = ab.cross(ad);
+    normals[3] = ac.cross(ab);
+    normals[0] = -(normals[1] + normals[2] + normals[3]);
+    for (int i = 0; i < 4; ++i) squared_lengths[i] = normals[i].squaredNorm();
+    determinant = -normals[3].dot(ad);
+  }
+  // cos·|cos| of the angle between faces i and j, times the squares of their lengths.
+  double signed_square(int i, int j) const {
+    const double cosine = -normals[i].dot(normals[j]);
+    return cosine * std::abs(cosine);
+  }
+};
+
+}  // namespace
+
+DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Faces faces(a, b, c, d);
+  std::array<double, 4> inverse;
   for (int i = 0; i < 4; ++i) {
-    const double squared_length = normals[i].squaredNorm();
-    if (!(squared_length > 0.0)) return {-1.0, 1.0};
-    inverse_length[i] = 1.0 / std::sqrt(squared_length);
+    if (!(faces.squared_lengths[i] > 0.0)) return {-1.0, 1.0};
+    inverse[i] = 1.0 / faces.squared_lengths[i];
   }
   DihedralRange range;
-  for (const auto& faces : kTetEdges) {
-    const int i = faces[0], j = faces[1];
-    const double cosine = -normals[i].dot(normals[j]) * inverse_length[i] * inverse_length[j];
-    range.lowest_cosine = std::min(range.lowest_cosine, cosine);
-    range.highest_cosine = std::max(range.highest_cosine, cosine);
+  for (const auto& [i, j] : kTetEdges) {
+    const double square = faces.signed_square(i, j) * inverse[i] * inverse[j];
+    range.lowest = std::min(range.lowest, square);
+    range.highest = std::max(range.highest, square);
   }
   return range;
+}
+
+AngleBounds::AngleBounds(double min_deg, double max_deg) {
+  const auto signed_square = [](double degrees) {
+    const double cosine = std::cos(degrees * 3.14159265358979323846 / 180.0);
+    return cosine * std::abs(cosine);
+  };
+  highest = signed_square(min_deg);
+  lowest = signed_square(max_deg);
 }
 
 double shape_score(const DihedralRange& range) {

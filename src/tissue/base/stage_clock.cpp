@@ -32,7 +32,9 @@ StageClock::StageClock() : bytes_at_start_(memory_use().now) {}
 
 void StageClock::start(const std::string& name) {
   stop();
-  stages_.push_back({name, 0.0, 0.0, 0});
+  current_ = 0;
+  while (current_ < stages_.size() && stages_[current_].name != name) ++current_;
+  if (current_ == stages_.size()) stages_.push_back({name, 0.0, 0.0, 0});
   reset_memory_peak();
   cpu_at_start_ = cpu_now();
   wall_at_start_ = wall_now();
@@ -41,11 +43,11 @@ void StageClock::start(const std::string& name) {
 
 void StageClock::stop() {
   if (!running_) return;
-  StageCost& stage = stages_.back();
-  stage.cpu_seconds = cpu_now() - cpu_at_start_;
-  stage.wall_seconds = wall_now() - wall_at_start_;
+  StageCost& stage = stages_[current_];
+  stage.cpu_seconds += cpu_now() - cpu_at_start_;
+  stage.wall_seconds += wall_now() - wall_at_start_;
   const std::size_t peak = memory_use().peak;
-  stage.peak_bytes = peak > bytes_at_start_ ? peak - bytes_at_start_ : 0;
+  stage.peak_bytes = std::max(stage.peak_bytes, peak - std::min(peak, bytes_at_start_));
   running_ = false;
 }
 

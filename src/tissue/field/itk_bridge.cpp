@@ -4,12 +4,17 @@
 
 #include <itkBinaryBallStructuringElement.h>
 #include <itkBinaryMorphologicalOpeningImageFilter.h>
+#include <itkGDCMImageIO.h>
+#include <itkGDCMSeriesFileNames.h>
 #include <itkImageFileReader.h>
 #include <itkImageIOFactory.h>
+#include <itkImageSeriesReader.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
 #include <itkSmoothingRecursiveGaussianImageFilter.h>
+#include <itksys/SystemTools.hxx>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tissue {
 namespace {
@@ -36,7 +41,55 @@ std::vector<typename Image::PixelType> voxels_of(const Image& image) {
   return {begin, begin + image.GetBufferedRegion().GetNumberOfPixels()};
 }
 
-itk::ImageIOBase::Pointer open_image(const std::string& path) {
+// The slices of the one series in a folder, in their order.
+std::vector<std::string> slices_in(const std::string& folder) {
+  auto names = itk::GDCMSeriesFileNames::New();
+  names->SetUseSeriesDetails(true);
+  names->SetDirectory(folder);
+  const std::vector<std::string>& series = names->GetSeriesUIDs();
+  if (series.empty()) {
+    throw InputError(ErrorCode::kFile, "volume: '" + folder + "' holds no DICOM series");
+  }
+  if (series.size() > 1) {
+    std::string list;
+    for (const std::string& uid : series) {
+      list += "\n  " + uid + " (" + std::to_string(names->GetFileNames(uid).size()) + " files)";
+    }
+    throw InputError(ErrorCode::kFile, "volume: '" + folder + "' holds " +
+                                           std::to_string(series.size()) +
+                                           " DICOM series; keep one of them in a folder:" + list);
+  }
+  return names->GetFileNames(series[0]);
+}
+
+// A volume has one distance between slices: a gap or a skipped slice would be closed silently.
+void require_even_slices(const std::vector<std::string>& slices) {
+  std::vector<std::array<double, 3>> origins;
+  for (const std::string& slice : slices) {
+    auto io = itk::GDCMImageIO::New();
+    io->SetFileName(slice);
+    io->ReadImageInformation();
+    origins.push_back({io->GetOrigin(0), io->GetOrigin(1), io->GetOrigin(2)});
+  }
+  const auto gap = [&](std::size_t i) {
+    double squared = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      squared += std::pow(origins[i + 1][axis] - origins[i][axis], 2);
+    }
+    return std::sqrt(squared);
+  };
+  for (std::size_t i = 1; i + 1 < origins.size(); ++i) {
+    if (std::abs(gap(i) - gap(0)) <= 0.01 * gap(0)) continue;
+    throw InputError(ErrorCode::kNonuniform, "volume: slices are " + to_text(gap(0)) + " mm and " +
+                                                 to_text(gap(i)) + " mm apart, the latter from '" +
+                                                 slices[i] + "' on");
+  }
+}
+
+bool is_folder(const std::string& path) { return itksys::SystemTools::FileIsDirectory(path); }
+
+itk::ImageIOBase::Pointer open_image(const std::string& given) {
+  const std::string path = is_folder(given) ? slices_in(given).front() : given;
   auto io = itk::ImageIOFactory::CreateImageIO(path.c_str(), itk::ImageIOFactory::ReadMode);
   if (io == nullptr) {
     throw InputError(ErrorCode::kFile,
@@ -56,13 +109,25 @@ itk::ImageIOBase::Pointer open_image(const std::string& path) {
   return io;
 }
 
-template <class T>
-ImageFile read_as(const std::string& path) {
-  using Image = itk::Image<T, 3>;
+template <class Image>
+typename Image::Pointer load(const std::string& path) {
+  if (is_folder(path)) {
+    auto reader = itk::ImageSeriesReader<Image>::New();
+    reader->SetImageIO(itk::GDCMImageIO::New());
+    reader->SetFileNames(slices_in(path));
+    reader->Update();
+    return reader->GetOutput();
+  }
   auto reader = itk::ImageFileReader<Image>::New();
   reader->SetFileName(path);
   reader->Update();
-  const Image& image = *reader->GetOutput();
+  return reader->GetOutput();
+}
+
+template <class T>
+ImageFile read_as(const std::string& path) {
+  const auto loaded = load<itk::Image<T, 3>>(path);
+  const itk::Image<T, 3>& image = *loaded;
   ImageFile file;
   for (unsigned int i = 0; i < 3; ++i) {
     file.size[i] = static_cast<std::uint32_t>(image.GetLargestPossibleRegion().GetSize()[i]);
@@ -78,6 +143,7 @@ ImageFile read_as(const std::string& path) {
 
 ImageFile read_image(const std::string& path) {
   try {
+    if (is_folder(path)) require_even_slices(slices_in(path));
     const itk::ImageIOBase::Pointer io = open_image(path);
     using Component = itk::ImageIOBase::IOComponentType;
     const Component type = io->GetComponentType();

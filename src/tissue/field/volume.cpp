@@ -160,8 +160,13 @@ bool same_grid(const Grid& a, const Grid& b) {
 std::array<double, 2> value_range(const Volume& volume) {
   std::array<double, 2> range = std::visit(
       [](const auto& values) {
-        const auto [low, high] = std::minmax_element(values.begin(), values.end());
-        return std::array<double, 2>{static_cast<double>(*low), static_cast<double>(*high)};
+        // Written out, because std::minmax_element does not vectorise.
+        auto low = values[0], high = values[0];
+        for (const auto value : values) {
+          low = value < low ? value : low;
+          high = value > high ? value : high;
+        }
+        return std::array<double, 2>{static_cast<double>(low), static_cast<double>(high)};
       },
       volume.voxels);
   for (double& value : range) value = volume.slope * value + volume.intercept;

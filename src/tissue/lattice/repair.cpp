@@ -1,7 +1,7 @@
 #include "repair.h"
 
+#include "tissue/base/boundary.h"
 #include "tissue/base/disjoint_sets.h"
-#include "tissue/base/topology.h"
 
 #include <algorithm>
 #include <map>
@@ -12,169 +12,71 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-// A mesh whose tets can be dropped one by one: the faces are found once and kept up to date.
-class Workpiece {
- public:
-  explicit Workpiece(LatticeMesh& lattice_mesh)
-      : mesh(lattice_mesh),
-        faces(face_topology(lattice_mesh.tets, lattice_mesh.vertices.size())),
-        kept(lattice_mesh.tets.size(), 1) {}
-
-  void drop(std::uint32_t t) {
-    if (kept[t] == 0) return;
-    kept[t] = 0;
-    for (const std::uint32_t f : faces.tet_faces[t]) {
-      auto& sides = faces.face_tets[f];
-      if (sides[0] == t) sides[0] = sides[1];
-      sides[1] = kNoTet;
-    }
-  }
-
-  // Removes the dropped tets and the vertices that nothing uses, keeping the order of the rest.
-  void compact() {
-    Indices number(mesh.vertices.size(), 0);
-    std::size_t next_tet = 0;
-    for (std::size_t t = 0; t < kept.size(); ++t) {
-      if (kept[t] == 0) continue;
-      for (const std::uint32_t vertex : mesh.tets[t]) number[vertex] = 1;
-      mesh.tets[next_tet] = mesh.tets[t];
-      mesh.whole[next_tet] = mesh.whole[t];
-      ++next_tet;
-    }
-    mesh.tets.resize(next_tet);
-    mesh.whole.resize(next_tet);
-    std::uint32_t next_vertex = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] == 0) continue;
-      mesh.vertices[next_vertex] = mesh.vertices[v];
-      number[v] = next_vertex++;
-    }
-    mesh.vertices.resize(next_vertex);
-    for (Tet& tet : mesh.tets) {
-      for (std::uint32_t& vertex : tet) vertex = number[vertex];
-    }
-  }
-
+// A mesh whose tets can be dropped one by one.
+struct Workpiece {
   LatticeMesh& mesh;
-  FaceTopology faces;
+  std::vector<std::uint8_t> on_surface;
+  /// Empty as long as no tet has been dropped.
   std::vector<std::uint8_t> kept;
+
+  bool keeps(std::uint32_t t) const { return kept.empty() || kept[t] != 0; }
+  // All of the tet's vertices may lie on the boundary afterwards.
+  bool drop(std::uint32_t t) {
+    if (kept.empty()) kept.assign(mesh.tets.size(), 1);
+    for (const std::uint32_t vertex : mesh.tets[t]) on_surface[vertex] = 1;
+    return std::exchange(kept[t], std::uint8_t{0}) != 0;
+  }
 };
 
-void keep_largest_component(Workpiece& piece) {
-  const std::vector<std::uint8_t>& kept = piece.kept;
-  DisjointSets sets(kept.size());
-  for (const auto& sides : piece.faces.face_tets) {
-    if (sides[1] != kNoTet) sets.unite(sides[0], sides[1]);
+// Removes the dropped tets and the vertices that nothing uses, keeping the order of the rest.
+void compact(LatticeMesh& mesh, const std::vector<std::uint8_t>& kept) {
+  Indices number(mesh.vertices.size(), 0);
+  std::size_t next_tet = 0;
+  for (std::size_t t = 0; t < kept.size(); ++t) {
+    if (kept[t] == 0) continue;
+    for (const std::uint32_t vertex : mesh.tets[t]) number[vertex] = 1;
+    mesh.tets[next_tet] = mesh.tets[t];
+    mesh.whole[next_tet] = mesh.whole[t];
+    ++next_tet;
   }
-  Indices sizes(kept.size(), 0);
+  mesh.tets.resize(next_tet);
+  mesh.whole.resize(next_tet);
+  std::uint32_t next_vertex = 0;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == 0) continue;
+    mesh.vertices[next_vertex] = mesh.vertices[v];
+    number[v] = next_vertex++;
+  }
+  mesh.vertices.resize(next_vertex);
+  for (Tet& tet : mesh.tets) {
+    for (std::uint32_t& vertex : tet) vertex = number[vertex];
+  }
+  for (Triangle& triangle : mesh.surface) {
+    for (std::uint32_t& vertex : triangle) vertex = number[vertex];
+  }
+}
+
+// The component with the most tets, after dropping has torn the mesh. Where every vertex has one
+// fan of tets, those that share a vertex hang together.
+void keep_largest_component(Workpiece& piece) {
+  const std::vector<Tet>& tets = piece.mesh.tets;
+  DisjointSets sets(piece.mesh.vertices.size());
+  for (std::uint32_t t = 0; t < tets.size(); ++t) {
+    if (!piece.keeps(t)) continue;
+    for (int i = 1; i < 4; ++i) sets.unite(tets[t][0], tets[t][i]);
+  }
+  Indices sizes(piece.mesh.vertices.size(), 0);
   std::size_t components = 0;
-  for (std::uint32_t t = 0; t < kept.size(); ++t) {
-    if (kept[t] != 0) components += sizes[sets.find(t)]++ == 0;
+  for (std::uint32_t t = 0; t < tets.size(); ++t) {
+    if (piece.keeps(t)) components += sizes[sets.find(tets[t][0])]++ == 0;
   }
   if (components <= 1) return;
   const auto largest =
       static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  for (std::uint32_t t = 0; t < kept.size(); ++t) {
-    if (sets.find(t) != largest) piece.drop(t);
+  for (std::uint32_t t = 0; t < tets.size(); ++t) {
+    if (sets.find(tets[t][0]) != largest) piece.kept[t] = 0;
   }
   piece.mesh.components_dropped += components - 1;
-}
-
-// A corner of the boundary: triangle (tet, face) at one of its vertices, with the other two.
-struct BoundaryCorner {
-  std::uint32_t vertex, other, triangle;
-  bool operator<(const BoundaryCorner& right) const {
-    return std::tie(vertex, other, triangle) < std::tie(right.vertex, right.other, right.triangle);
-  }
-};
-
-struct BoundaryTriangle {
-  std::uint32_t tet;
-  Triangle corners;
-};
-
-// The boundary where it is not a manifold.
-struct Defects {
-  // Vertices with more than one fan of boundary triangles or with an edge of more than two.
-  Indices vertices;
-  // For each such vertex, the tets at its smaller fans.
-  std::map<std::uint32_t, Indices> tets_of_smaller_fans;
-  // Edges in more than two boundary triangles.
-  std::vector<Edge> edges;
-};
-
-std::vector<BoundaryTriangle> boundary_triangles(const Workpiece& piece) {
-  std::vector<BoundaryTriangle> boundary;
-  for (std::uint32_t t = 0; t < piece.kept.size(); ++t) {
-    if (piece.kept[t] == 0) continue;
-    const Tet& tet = piece.mesh.tets[t];
-    for (int f = 0; f < 4; ++f) {
-      if (piece.faces.face_tets[piece.faces.tet_faces[t][f]][1] != kNoTet) continue;
-      const auto& corner = kTetFaces[f];
-      boundary.push_back({t, {tet[corner[0]], tet[corner[1]], tet[corner[2]]}});
-    }
-  }
-  return boundary;
-}
-
-void inspect_vertex(const std::vector<BoundaryTriangle>& boundary,
-                    const std::vector<BoundaryCorner>& corners, std::size_t begin, std::size_t end,
-                    Defects& defects) {
-  // Triangles at the vertex that share an edge there belong to one fan.
-  std::map<std::uint32_t, std::uint32_t> local;
-  for (std::size_t i = begin; i < end; ++i) {
-    local.emplace(corners[i].triangle, static_cast<std::uint32_t>(local.size()));
-  }
-  DisjointSets fans(local.size());
-  std::size_t fan_count = local.size();
-  bool sound = true;
-  for (std::size_t i = begin; i < end;) {
-    std::size_t next = i;
-    while (next < end && corners[next].other == corners[i].other) {
-      fan_count -= fans.unite(local[corners[i].triangle], local[corners[next].triangle]) ? 1 : 0;
-      ++next;
-    }
-    if (next - i != 2) {
-      sound = false;
-      if (corners[i].vertex < corners[i].other) {
-        defects.edges.push_back({corners[i].vertex, corners[i].other});
-      }
-    }
-    i = next;
-  }
-  if (sound && fan_count == 1) return;
-  const std::uint32_t vertex = corners[begin].vertex;
-  defects.vertices.push_back(vertex);
-  Indices sizes(local.size(), 0);
-  for (const auto& entry : local) ++sizes[fans.find(entry.second)];
-  const auto largest =
-      static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
-  for (const auto& [triangle, index] : local) {
-    if (fans.find(index) == largest) continue;
-    defects.tets_of_smaller_fans[vertex].push_back(boundary[triangle].tet);
-  }
-}
-
-Defects find_defects(const Workpiece& piece) {
-  const std::vector<BoundaryTriangle> boundary = boundary_triangles(piece);
-  std::vector<BoundaryCorner> corners;
-  corners.reserve(boundary.size() * 6);
-  for (std::uint32_t i = 0; i < boundary.size(); ++i) {
-    for (const std::uint32_t vertex : boundary[i].corners) {
-      for (const std::uint32_t other : boundary[i].corners) {
-        if (other != vertex) corners.push_back({vertex, other, i});
-      }
-    }
-  }
-  std::sort(corners.begin(), corners.end());
-  Defects defects;
-  for (std::size_t begin = 0; begin < corners.size();) {
-    std::size_t end = begin;
-    while (end < corners.size() && corners[end].vertex == corners[begin].vertex) ++end;
-    inspect_vertex(boundary, corners, begin, end, defects);
-    begin = end;
-  }
-  return defects;
 }
 
 // The tets at each of the given vertices.
@@ -182,8 +84,8 @@ std::map<std::uint32_t, Indices> stars(const Workpiece& piece, const Indices& ve
   std::vector<std::uint8_t> wanted(piece.mesh.vertices.size(), 0);
   for (const std::uint32_t vertex : vertices) wanted[vertex] = 1;
   std::map<std::uint32_t, Indices> result;
-  for (std::uint32_t t = 0; t < piece.kept.size(); ++t) {
-    if (piece.kept[t] == 0) continue;
+  for (std::uint32_t t = 0; t < piece.mesh.tets.size(); ++t) {
+    if (!piece.keeps(t)) continue;
     for (const std::uint32_t vertex : piece.mesh.tets[t]) {
       if (wanted[vertex] != 0) result[vertex].push_back(t);
     }
@@ -195,17 +97,16 @@ std::map<std::uint32_t, Indices> stars(const Workpiece& piece, const Indices& ve
 // the class of each, numbered in the order of the tets.
 Indices classes_around(const Workpiece& piece, const Indices& star, const Indices& common) {
   DisjointSets sets(star.size());
+  std::map<Triangle, std::uint32_t> first_at;
   for (std::uint32_t i = 0; i < star.size(); ++i) {
+    const Tet& tet = piece.mesh.tets[star[i]];
     for (int f = 0; f < 4; ++f) {
       // A face holds every vertex of its tet but the one that it lies opposite to.
-      const std::uint32_t opposite = piece.mesh.tets[star[i]][f];
-      if (std::find(common.begin(), common.end(), opposite) != common.end()) continue;
-      const auto& sides = piece.faces.face_tets[piece.faces.tet_faces[star[i]][f]];
-      const std::uint32_t neighbour = sides[0] == star[i] ? sides[1] : sides[0];
-      const auto found = std::lower_bound(star.begin(), star.end(), neighbour);
-      if (found != star.end() && *found == neighbour) {
-        sets.unite(i, static_cast<std::uint32_t>(found - star.begin()));
-      }
+      if (std::find(common.begin(), common.end(), tet[f]) != common.end()) continue;
+      Triangle face = {tet[kTetFaces[f][0]], tet[kTetFaces[f][1]], tet[kTetFaces[f][2]]};
+      std::sort(face.begin(), face.end());
+      const auto [here, is_new] = first_at.emplace(face, i);
+      if (!is_new) sets.unite(here->second, i);
     }
   }
   Indices classes(star.size());
@@ -235,6 +136,7 @@ void copy_vertices(Workpiece& piece, const Indices& vertices) {
       Tet& tet = mesh.tets[star[i]];
       *std::find(tet.begin(), tet.end(), vertex) = first_copy + classes[i] - 1;
     }
+    piece.on_surface.insert(piece.on_surface.end(), count, std::uint8_t{1});
     mesh.vertices_copied += count;
   }
 }
@@ -267,23 +169,31 @@ Indices tets_to_drop(const Workpiece& piece, const Defects& defects) {
 
 }  // namespace
 
-void repair(LatticeMesh& mesh, bool all_components) {
-  Workpiece piece(mesh);
+void repair(LatticeMesh& mesh, std::vector<std::uint8_t> on_surface, bool all_components,
+            const Run& run) {
+  Workpiece piece = {mesh, std::move(on_surface), {}};
+  std::vector<BoundaryTriangle> boundary;
+  const auto look_again = [&] {
+    run.go_on();
+    boundary = boundary_triangles(mesh.tets, piece.kept, piece.on_surface);
+    return find_defects(boundary, mesh.vertices.size());
+  };
   // Every round but the last drops tets, of which there are finitely many.
   while (true) {
-    if (!all_components) keep_largest_component(piece);
-    Defects defects = find_defects(piece);
+    Defects defects = look_again();
     if (!defects.vertices.empty()) {
       copy_vertices(piece, defects.vertices);
-      defects = find_defects(piece);
+      defects = look_again();
     }
     if (defects.vertices.empty()) break;
-    for (const std::uint32_t t : tets_to_drop(piece, defects)) {
-      mesh.tets_dropped += piece.kept[t];
-      piece.drop(t);
-    }
+    for (const std::uint32_t t : tets_to_drop(piece, defects)) mesh.tets_dropped += piece.drop(t);
   }
-  piece.compact();
+  if (!piece.kept.empty() && !all_components) keep_largest_component(piece);
+  mesh.surface.reserve(boundary.size());
+  for (const BoundaryTriangle& triangle : boundary) {
+    if (piece.keeps(triangle.tet)) mesh.surface.push_back(triangle.corners);
+  }
+  if (!piece.kept.empty()) compact(mesh, piece.kept);
 }
 
 }  // namespace tissue

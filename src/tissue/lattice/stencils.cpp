@@ -1,6 +1,9 @@
 #include "stencils.h"
 
+#include "tissue/lattice/bcc_lattice.h"
+
 #include <cassert>
+#include <vector>
 
 namespace tissue {
 namespace {
@@ -81,6 +84,22 @@ Stencil fill_tet(const std::array<int, 4>& signs, const Corners& corners) {
                stencil);
   }
   return stencil;
+}
+
+const Stencil& stencil_for(int k, const std::array<int, 4>& signs) {
+  constexpr int kSigns = 81;  // 3⁴
+  static const std::vector<Stencil> table = [] {
+    std::vector<Stencil> stencils;
+    for (const BccTet& tet : bcc_tets()) {
+      for (int code = 0; code < kSigns; ++code) {
+        stencils.push_back(fill_tet(
+            {code % 3 - 1, code / 3 % 3 - 1, code / 9 % 3 - 1, code / 27 - 1}, tet.corners));
+      }
+    }
+    return stencils;
+  }();
+  const int code = signs[0] + 1 + 3 * (signs[1] + 1) + 9 * (signs[2] + 1) + 27 * (signs[3] + 1);
+  return table[static_cast<std::size_t>(k * kSigns + code)];
 }
 
 }  // namespace tissue

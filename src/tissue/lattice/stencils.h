@@ -20,4 +20,7 @@ struct Stencil {
 /// corners, which decide how quads are split. Tets may come out with negative volume.
 Stencil fill_tet(const std::array<int, 4>& signs, const std::array<std::array<int, 3>, 4>& corners);
 
+/// The stencil of tet `k` of bcc_tets() under the signs, out of a table.
+const Stencil& stencil_for(int k, const std::array<int, 4>& signs);
+
 }  // namespace tissue

@@ -155,7 +155,7 @@ bool TemplateKey::face_decides(int face, int corner) const {
   return both_at_corner && (level > 0 || finer == 2);
 }
 
-Blueprint make_blueprint(const TemplateKey& key) {
+Blueprint make_blueprint(const TemplateKey& key, Splittings& splittings) {
   Blueprint blueprint;
   blueprint.key = key;
   const std::array<int, 6> ranks = edge_ranks(key);
@@ -170,8 +170,8 @@ Blueprint make_blueprint(const TemplateKey& key) {
         known.emplace(ShapeKey(steps, pattern.marks, pattern.diagonal_start),
                       static_cast<int>(blueprint.shapes.size()));
     if (is_new) {
-      blueprint.shapes.push_back({steps, pattern, splittings(pattern)});
-      assert(!blueprint.shapes.back().splittings.empty());
+      blueprint.shapes.push_back({steps, pattern, &splittings.of(pattern)});
+      assert(!blueprint.shapes.back().splittings->empty());
     }
     blueprint.parts.push_back({corners, entry->second});
   }

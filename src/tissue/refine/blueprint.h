@@ -42,14 +42,15 @@ struct Blueprint {
     /// From corner 0 to corners 1, 2, 3.
     std::array<Barycentric, 3> steps;
     SplitPattern pattern;
-    std::vector<Splitting> splittings;
+    const std::vector<Splitting>* splittings;
   };
   TemplateKey key;
   std::vector<Part> parts;
   std::vector<Shape> shapes;
 };
 
-Blueprint make_blueprint(const TemplateKey& key);
+/// The splittings live in `known`.
+Blueprint make_blueprint(const TemplateKey& key, Splittings& known);
 
 /// A point of the interior of a tet refined `level` times and the ends of the edge that it halves.
 struct InteriorPoint {

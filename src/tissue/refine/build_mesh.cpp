@@ -1,112 +1,51 @@
 #include "tissue/refine/build_mesh.h"
 
+#include "check_options.h"
+#include "filler.h"
+#include "lattice_search.h"
+#include "mesh_design.h"
 #include "tissue/base/error.h"
 #include "tissue/base/parallel.h"
-#include "tissue/base/stage_clock.h"
-#include "tissue/field/density_window.h"
+#include "tissue/field/density_sampling.h"
 #include "tissue/field/surface_distance.h"
-#include "tissue/refine/refine.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <utility>
 
 namespace tissue {
 namespace {
 
-// A mesh needs at least the tets around one lattice point.
-constexpr std::uint32_t kFewestTets = 24;
+// Angles of the lattice's own tets, 60 and 90 degrees, as cos·|cos|.
+constexpr DihedralRange kWholeAngles = {0.0, 0.25};
 
-[[noreturn]] void refuse(ErrorCode code, const std::string& sentence) {
-  throw InputError(code, sentence);
-}
-
-void check(const MeshOptions& options) {
-  const LevelOptions& levels = options.levels;
-  if (levels.sections < 1 || levels.sections > 255) {
-    refuse(ErrorCode::kN,
-           "level_sections: " + std::to_string(levels.sections) + " is not within 1 to 255");
-  }
-  if (levels.base_level < 0 || levels.base_level > 20) {
-    refuse(ErrorCode::kParam,
-           "base_level: " + std::to_string(levels.base_level) + " is not within 0 to 20");
-  }
-  if (levels.smooth_levels < 0 || levels.smooth_levels > 100) {
-    refuse(ErrorCode::kParam,
-           "smooth_levels: " + std::to_string(levels.smooth_levels) + " is not within 0 to 100");
-  }
-  if (!(levels.d_max >= 1.0 && levels.d_max <= 65535.0 &&
-        std::floor(levels.d_max) == levels.d_max)) {
-    refuse(ErrorCode::kParam,
-           "d_max: " + to_text(levels.d_max) + " is not a whole number within 1 to 65535");
-  }
-  if (!(options.spacing >= 0.0 && std::isfinite(options.spacing))) {
-    refuse(ErrorCode::kParam, "spacing: " + to_text(options.spacing) + " m is not positive");
-  }
-  if (options.spacing == 0.0 && options.initial_tetrahedra < kFewestTets) {
-    refuse(ErrorCode::kNTinit, "initial_tetrahedra: " + std::to_string(options.initial_tetrahedra) +
-                                   " is below " + std::to_string(kFewestTets));
-  }
-  if (options.spacing == 0.0 && options.initial_tetrahedra > options.max_tetrahedra) {
-    refuse(ErrorCode::kTooManyTets,
-           "initial_tetrahedra: " + std::to_string(options.initial_tetrahedra) +
-               " is over the limit of " + std::to_string(options.max_tetrahedra));
-  }
-  if (options.window) {
-    const auto& [low, high] = *options.window;
-    if (!std::isfinite(low) || !std::isfinite(high) || !(high > low)) {
-      refuse(ErrorCode::kParam,
-             "window: " + to_text(low) + " to " + to_text(high) + " is not a finite, rising range");
-    }
-  }
-}
-
-ImplicitSurface surface_for(const std::shared_ptr<const Volume>& volume,
-                            const std::shared_ptr<const Volume>& mask, const MeshOptions& options) {
-  if (mask == nullptr) return surface_at_iso(volume, options.iso_value);
-  if (!same_grid(volume->grid, mask->grid)) {
-    refuse(ErrorCode::kSizeMismatch, "mask: its grid of " + std::to_string(mask->grid.size[0]) +
-                                         " x " + std::to_string(mask->grid.size[1]) + " x " +
-                                         std::to_string(mask->grid.size[2]) +
-                                         " voxels is not the volume's");
-  }
-  return surface_of_mask(mask);
-}
-
-// The lattice at the spacing asked for, or at the spacing that comes within 2 % of the wished
-// number of tets: the number falls with the cube of the spacing, so a few rounds of that rule
-// suffice.
-LatticeMesh stuffed(const ImplicitSurface& surface, const MeshOptions& options) {
-  StuffingOptions stuffing;
-  stuffing.all_components = options.all_components;
-  // An organ fills at least a twelfth of its lattice, or is cropped first.
-  stuffing.max_points = 2.0 * static_cast<double>(options.max_tetrahedra);
-  stuffing.spacing = options.spacing;
-  // A lattice tet has a volume of spacing³/12.
-  const double volume_of_twelve = 12.0 * voxel_volume_inside(surface);
-  if (options.spacing > 0.0) {
-    const double expected = volume_of_twelve / std::pow(options.spacing, 3);
-    if (expected > static_cast<double>(options.max_tetrahedra)) {
-      refuse(ErrorCode::kTooManyTets,
-             "spacing: " + to_text(options.spacing) + " m would make about " + to_text(expected) +
-                 " initial tets, the limit is " + std::to_string(options.max_tetrahedra));
-    }
-    return stuff(surface, stuffing);
-  }
-  const double wished = options.initial_tetrahedra;
-  stuffing.spacing = std::cbrt(volume_of_twelve / wished);
-  LatticeMesh nearest;
-  double smallest_gap = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < 6 && smallest_gap > 0.02; ++round) {
-    LatticeMesh mesh = stuff(surface, stuffing);
-    const double ratio = static_cast<double>(mesh.tets.size()) / wished;
-    stuffing.spacing *= std::cbrt(ratio);
-    if (std::abs(ratio - 1.0) >= smallest_gap) continue;
-    smallest_gap = std::abs(ratio - 1.0);
-    nearest = std::move(mesh);
-  }
-  return nearest;
+// A volume of labels in which each stands for its density.
+Volume relabelled(const Volume& volume, const std::map<std::int64_t, double>& densities) {
+  Volume result;
+  result.grid = volume.grid;
+  result.quantity = Quantity::kLabel;
+  result.frame_id = volume.frame_id;
+  std::vector<float> values;
+  values.reserve(volume.grid.voxel_count());
+  std::visit(
+      [&](const auto& labels) {
+        auto last = densities.end();
+        for (const auto raw : labels) {
+          const double value = volume.slope * static_cast<double>(raw) + volume.intercept;
+          const auto label = static_cast<std::int64_t>(std::llround(value));
+          if (last == densities.end() || last->first != label) last = densities.find(label);
+          // Background has no tissue; whatever the surface does there, a density is positive.
+          const bool missing = last == densities.end();
+          if (missing && label != 0) {
+            throw InputError(ErrorCode::kParam, "label_densities: label " + std::to_string(label) +
+                                                    " of the volume is not in the table");
+          }
+          values.push_back(missing ? 1.0f : static_cast<float>(last->second));
+        }
+      },
+      volume.voxels);
+  result.voxels = std::move(values);
+  return result;
 }
 
 DensityWindow window_for(const Volume& volume, const ImplicitSurface& surface,
@@ -116,58 +55,81 @@ DensityWindow window_for(const Volume& volume, const ImplicitSurface& surface,
   return default_window(volume, surface, d_max);
 }
 
-template <class Position>
-std::vector<float> sampled_densities(const Volume& volume, const DensityWindow& window,
-                                     const std::vector<Position>& places, std::size_t begin,
-                                     std::vector<float> densities, int threads) {
-  densities.resize(places.size());
-  with_sampler(volume, [&](const auto& value) {
-    parallel_ranges(places.size() - begin, threads, [&](std::size_t from, std::size_t to) {
-      for (std::size_t i = begin + from; i < begin + to; ++i) {
-        densities[i] = static_cast<float>(window.density(value(places[i].template cast<double>())));
-      }
-    });
-  });
-  return densities;
-}
-
-std::vector<float> sampled_tet_densities(const Volume& volume, const DensityWindow& window,
-                                         const TetMesh& mesh, double spacing, int threads) {
-  std::vector<TetSampling> sampling;
-  for (int level = 0; level < 256; ++level) {
-    sampling.emplace_back(std::ldexp(spacing, -level), volume.grid.spacing);
+// Spacing and offset at which the mesh, or else the lattice, has as many tets as asked for.
+StuffingOptions lattice_for(const Organ& organ, const MeshOptions& options,
+                            TemplateLibrary& library, StageClock& clock, const Run& run) {
+  StuffingOptions stuffing;
+  stuffing.component = options.component;
+  stuffing.component.place = organ.volume.grid.to_grid(options.component.place);
+  // An organ fills at least a twelfth of its lattice, or is cropped first.
+  stuffing.max_points = 2.0 * static_cast<double>(options.max_tetrahedra);
+  stuffing.spacing = options.spacing;
+  if (options.spacing > 0.0) {
+    // Voxels are counted only where the whole box would be too much.
+    const Grid& grid = organ.volume.grid;
+    const double box = static_cast<double>(grid.voxel_count()) * grid.spacing.prod();
+    const double tets_per_volume = 12.0 / std::pow(options.spacing, 3);
+    if (box * tets_per_volume > 1e6) {
+      check_total(options, voxel_volume_inside(organ.surface) * tets_per_volume,
+                  "spacing: " + to_text(options.spacing) + " m");
+    }
+    return stuffing;
   }
-  std::vector<float> densities(mesh.tets.size());
-  with_sampler(volume, [&](const auto& value) {
-    const auto density = [&](const Vec3& place) { return window.density(value(place)); };
-    parallel_ranges(mesh.tets.size(), threads, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t t = begin; t < end; ++t) {
-        const auto corner = [&](int i) -> Vec3 {
-          return mesh.vertices[mesh.tets[t][i]].cast<double>();
-        };
-        densities[t] = static_cast<float>(
-            sampling[mesh.levels[t]].mean(corner(0), corner(1), corner(2), corner(3), density));
-      }
-    });
+  const bool by_total = options.target_tetrahedra > 0;
+  const bool by_design = by_total && options.method != Method::kUniform;
+  const double wished = by_total ? static_cast<double>(options.target_tetrahedra)
+                                 : static_cast<double>(options.initial_tetrahedra);
+  check_total(options, wished, by_total ? "target_tetrahedra" : "initial_tetrahedra");
+  // Sections of equal size have 1, 8, 64, … tets for each of the lattice's.
+  double growth = 1.0;
+  if (by_design) {
+    growth = 0.0;
+    for (int level = 0; level < options.levels.sections; ++level) {
+      growth += std::pow(8.0, std::min(level + options.levels.base_level, 8));
+    }
+    growth /= options.levels.sections;
+  }
+  // A lattice tet has a volume of spacing³/12.
+  stuffing.spacing = std::cbrt(12.0 * voxel_volume_inside(organ.surface) * growth / wished);
+  return search_lattice(stuffing, wished, by_total ? 0.002 : 0.02, [&](const StuffingOptions& at) {
+    if (by_design) {
+      return static_cast<double>(design_mesh(organ, at, options, library, clock, run).tetrahedra);
+    }
+    clock.start("lattice");
+    run.enter({"lattice", 0.0, 0});
+    return static_cast<double>(count_stuffed(organ.surface, at, run));
   });
-  return densities;
 }
 
-double volume_of(const TetMesh& mesh) {
+// By the divergence theorem: tets from one vertex to every boundary triangle.
+double volume_inside(const TetMesh& mesh) {
   double sum = 0.0;
-  for (const Tet& tet : mesh.tets) {
-    sum += determinant(mesh.vertices[tet[0]], mesh.vertices[tet[1]], mesh.vertices[tet[2]],
-                       mesh.vertices[tet[3]]);
+  for (const Triangle& triangle : mesh.surface) {
+    sum += determinant(mesh.vertices[0], mesh.vertices[triangle[0]], mesh.vertices[triangle[1]],
+                       mesh.vertices[triangle[2]]);
   }
   return sum / 6.0;
 }
 
-DihedralRange lattice_dihedral(const LatticeMesh& mesh) {
+// Angles of the tets for which `known` says no.
+template <class Known>
+DihedralRange measured_angles(const TetMesh& mesh, const Run& run, const Known& known) {
+  constexpr std::size_t kPiece = 16384;
+  std::vector<DihedralRange> ranges((mesh.tets.size() + kPiece - 1) / kPiece);
+  parallel_ranges(ranges.size(), 1, run, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t piece = begin; piece < end; ++piece) {
+      const std::size_t last = std::min((piece + 1) * kPiece, mesh.tets.size());
+      for (std::size_t t = piece * kPiece; t < last; ++t) {
+        if (known(t)) continue;
+        const auto corner = [&](int i) -> Vec3 {
+          return mesh.vertices[mesh.tets[t][i]].cast<double>();
+        };
+        ranges[piece].include(dihedral_range(corner(0), corner(1), corner(2), corner(3)));
+      }
+    }
+  });
   DihedralRange range;
-  for (const Tet& tet : mesh.tets) {
-    range.include(dihedral_range(mesh.vertices[tet[0]], mesh.vertices[tet[1]],
-                                 mesh.vertices[tet[2]], mesh.vertices[tet[3]]));
-  }
+  for (const DihedralRange& part : ranges) range.include(part);
   return range;
 }
 
@@ -180,12 +142,14 @@ std::vector<std::uint64_t> level_counts(const std::vector<std::uint8_t>& levels)
   return counts;
 }
 
-TetMesh as_uniform(const LatticeMesh& lattice, std::vector<std::uint8_t> levels) {
+TetMesh as_uniform(LatticeMesh& lattice, std::vector<std::uint8_t> levels) {
   TetMesh mesh;
+  mesh.vertices.reserve(lattice.vertices.size());
   for (const Vec3& vertex : lattice.vertices) mesh.vertices.push_back(vertex.cast<float>());
-  mesh.tets = lattice.tets;
+  lattice.vertices = {};
+  mesh.tets = std::move(lattice.tets);
   mesh.levels = std::move(levels);
-  mesh.surface = boundary_of(mesh.tets, mesh.vertices.size());
+  mesh.surface = std::move(lattice.surface);
   return mesh;
 }
 
@@ -199,93 +163,190 @@ TetMesh as_refined(RefinedMesh refined) {
   return mesh;
 }
 
+// Builds one mesh, stage by stage, and measures it on the way.
+class Builder {
+ public:
+  Builder(const Organ& organ, const MeshOptions& options, const Run& run)
+      : organ_(organ), options_(options), run_(run) {}
+
+  BuiltMesh build() {
+    const StuffingOptions stuffing = lattice_for(organ_, options_, library_, clock_, run_);
+    design_ = design_mesh(organ_, stuffing, options_, library_, clock_, run_);
+    statistics_.initial = design_.lattice.mesh.tets.size();
+    lattice_vertices_ = static_cast<std::uint32_t>(design_.lattice.mesh.vertices.size());
+    spacing_ = design_.lattice.mesh.spacing;
+    take_counts();
+    make_tets();
+    project();
+    sample();
+    finish();
+    BuiltMesh built;
+    built.mesh = std::move(mesh_);
+    if (options_.lattice_only) {
+      built.lattice_densities = std::move(design_.tet_means);
+      built.level_wishes = std::move(design_.wishes);
+    }
+    return built;
+  }
+
+ private:
+  void take_counts() {
+    const LatticeMesh& lattice = design_.lattice.mesh;
+    statistics_.border_touched = lattice.border_touched;
+    statistics_.components_dropped = lattice.components_dropped;
+    statistics_.vertices_copied = lattice.vertices_copied;
+    statistics_.tets_dropped = lattice.tets_dropped;
+    statistics_.tets_promoted = design_.plan.tets_promoted;
+    statistics_.thresholds = design_.thresholds;
+    if (!design_.tet_means.empty()) {
+      statistics_.distinct_densities = distinct_densities(design_.tet_means);
+    }
+    statistics_.levels = level_counts(design_.refined ? design_.plan.levels : design_.levels);
+    statistics_.closure = options_.lattice_only
+                              ? 0
+                              : static_cast<std::int64_t>(design_.tetrahedra) -
+                                    static_cast<std::int64_t>(predicted_tets(design_.wishes));
+  }
+
+  void make_tets() {
+    clock_.start("refinement");
+    run_.enter({"refinement", 0.4, design_.tetrahedra});
+    whole_ = std::move(design_.lattice.mesh.whole);
+    if (design_.refined) {
+      mesh_ = as_refined(fill_mesh(design_.lattice, design_.plan, design_.blocks, run_));
+      first_tet_ = std::move(design_.blocks.first_tet);
+      dihedral_ = design_.plan.whole_dihedral;
+      dihedral_.include(design_.plan.cut_dihedral);
+      whole_dihedral_ = design_.plan.whole_dihedral;
+    } else {
+      mesh_ = as_uniform(design_.lattice.mesh, std::move(design_.levels));
+      whole_dihedral_ = kWholeAngles;
+      dihedral_ = angles({});
+    }
+    mesh_.lattice_vertices = lattice_vertices_;
+    // What only the design needed makes room for the mesh.
+    design_.lattice = {};
+    design_.plan = {};
+    design_.blocks = {};
+    design_.levels = {};
+  }
+
+  // The angles of the mesh as it is: known for the parts of whole lattice tets that have not moved,
+  // measured for all others.
+  DihedralRange angles(const std::vector<std::uint8_t>& moved) const {
+    std::vector<std::uint8_t> known = whole_;
+    if (!first_tet_.empty()) {
+      known.resize(mesh_.tets.size());
+      for (std::size_t t = 0; t + 1 < first_tet_.size(); ++t) {
+        std::fill(known.begin() + static_cast<std::ptrdiff_t>(first_tet_[t]),
+                  known.begin() + static_cast<std::ptrdiff_t>(first_tet_[t + 1]), whole_[t]);
+      }
+    }
+    DihedralRange range = measured_angles(mesh_, run_, [&](std::size_t t) {
+      if (known[t] == 0 || moved.empty()) return known[t] != 0;
+      const Tet& tet = mesh_.tets[t];
+      return (moved[tet[0]] | moved[tet[1]] | moved[tet[2]] | moved[tet[3]]) == 0;
+    });
+    if (std::find(known.begin(), known.end(), 1) != known.end()) range.include(whole_dihedral_);
+    return range;
+  }
+
+  void project() {
+    clock_.start("projection");
+    run_.enter({"projection", 0.5, mesh_.tets.size()});
+    if (options_.project_boundary && !options_.lattice_only) {
+      const std::vector<std::uint8_t> moved =
+          project_boundary(organ_.surface, mesh_.vertices, mesh_.tets, mesh_.surface, spacing_,
+                           options_.projection, run_);
+      dihedral_ = angles(moved);
+    }
+    const SurfaceDistance distance =
+        surface_distance(organ_.surface, mesh_.vertices, mesh_.surface, spacing_, run_);
+    statistics_.surface_error = {distance.mean, distance.max};
+    statistics_.boundary_vertices = distance.vertices;
+    statistics_.boundary_vertices_astray = distance.astray;
+    whole_ = {};
+    first_tet_ = {};
+  }
+
+  void sample() {
+    clock_.start("densities");
+    run_.enter({"densities", 0.8, mesh_.tets.size()});
+    // Lattice vertices on the boundary may have followed; their density decided the levels and
+    // stays what it was.
+    mesh_.densities = sample_densities(organ_.volume, organ_.window, mesh_.vertices,
+                                       lattice_vertices_, std::move(design_.densities), run_);
+    mesh_.tet_densities = sample_tet_densities(organ_.volume, organ_.window, mesh_.vertices,
+                                               mesh_.tets, mesh_.levels, spacing_, run_);
+  }
+
+  void finish() {
+    const Grid& grid = organ_.volume.grid;
+    parallel_ranges(mesh_.vertices.size(), 4096, run_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t v = begin; v < end; ++v) {
+        mesh_.vertices[v] = grid.to_world(mesh_.vertices[v].cast<double>()).cast<float>();
+      }
+    });
+    mesh_.frame_id = organ_.volume.frame_id;
+    mesh_.uuid = mesh_uuid(mesh_);
+    statistics_.volume = volume_inside(mesh_);
+    clock_.stop();
+    statistics_.tetrahedra = mesh_.tets.size();
+    statistics_.vertices = mesh_.vertices.size();
+    statistics_.dihedral = {dihedral_.min_angle(), dihedral_.max_angle()};
+    statistics_.stages = clock_.stages();
+    statistics_.peak_bytes = clock_.peak_bytes();
+    mesh_.statistics = std::move(statistics_);
+    run_.enter({"densities", 1.0, mesh_.tets.size()});
+  }
+
+  const Organ& organ_;
+  const MeshOptions& options_;
+  const Run& run_;
+  StageClock clock_;
+  TemplateLibrary library_;
+  MeshDesign design_;
+  TetMesh mesh_;
+  MeshStatistics statistics_;
+  DihedralRange dihedral_, whole_dihedral_;
+  // For each lattice tet: whether it is whole, and where its parts begin (empty for the uniform
+  // mesh, whose tets are the lattice's).
+  std::vector<std::uint8_t> whole_;
+  std::vector<std::size_t> first_tet_;
+  std::uint32_t lattice_vertices_ = 0;
+  double spacing_ = 0.0;
+};
+
 }  // namespace
 
+BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume, const ImplicitSurface& surface,
+                     const MeshOptions& options, const Run& run) {
+  check_options(options);
+  const Grid& grid = surface.field->grid;
+  if (!same_grid(volume->grid, grid)) {
+    throw InputError(ErrorCode::kSizeMismatch, "mask: its grid of " + std::to_string(grid.size[0]) +
+                                                   " x " + std::to_string(grid.size[1]) + " x " +
+                                                   std::to_string(grid.size[2]) +
+                                                   " voxels is not the volume's");
+  }
+  Run here = run;
+  here.threads = options.threads;
+  std::shared_ptr<const Volume> densities = volume;
+  if (!options.label_densities.empty()) {
+    densities = std::make_shared<Volume>(relabelled(*volume, options.label_densities));
+  }
+  const Organ organ = {*densities, surface, window_for(*densities, surface, options)};
+  return Builder(organ, options, here).build();
+}
+
 BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,
-                     const std::shared_ptr<const Volume>& mask, const MeshOptions& options) {
-  check(options);
-  StageClock clock;
-  clock.start("lattice");
-  const ImplicitSurface surface = surface_for(volume, mask, options);
-  LatticeMesh stuffed_mesh = stuffed(surface, options);
-
-  MeshStatistics statistics;
-  statistics.initial = stuffed_mesh.tets.size();
-  statistics.border_touched = stuffed_mesh.border_touched;
-  statistics.components_dropped = stuffed_mesh.components_dropped;
-  statistics.vertices_copied = stuffed_mesh.vertices_copied;
-  statistics.tets_dropped = stuffed_mesh.tets_dropped;
-
-  clock.start("levels");
-  const DensityWindow window = window_for(*volume, surface, options);
-  RefinableLattice lattice = refinable(std::move(stuffed_mesh));
-  const std::vector<Vec3>& places = lattice.mesh.vertices;
-  std::vector<float> densities = sampled_densities(*volume, window, places, 0, {}, options.threads);
-  std::vector<double> tet_density =
-      smoothed(tet_means(lattice.mesh.tets, densities), lattice.mesh.tets, places.size(),
-               options.levels.smooth_levels);
-  statistics.distinct_densities = distinct_densities(tet_density);
-  statistics.thresholds = density_thresholds(tet_density, options.levels);
-  const std::vector<std::uint8_t> wishes =
-      wished_levels(tet_density, statistics.thresholds, options.levels.base_level);
-  std::vector<std::uint8_t> levels = wishes;
-  raise_levels(levels, lattice.edges.tet_edges, lattice.edges.edges.size());
-  const std::uint64_t predicted = predicted_tets(levels);
-  if (predicted > options.max_tetrahedra) {
-    refuse(ErrorCode::kTooManyTets, "level_sections: " + std::to_string(options.levels.sections) +
-                                        " on " + std::to_string(levels.size()) +
-                                        " initial tets would make " + std::to_string(predicted) +
-                                        " tets or more, the limit is " +
-                                        std::to_string(options.max_tetrahedra));
+                     const std::shared_ptr<const Volume>& mask, const MeshOptions& options,
+                     const Run& run) {
+  check_options(options);
+  if (mask == nullptr) {
+    return build_mesh(volume, surface_at_iso(volume, options.iso_value), options, run);
   }
-
-  clock.start("refinement");
-  BuiltMesh built;
-  TetMesh& mesh = built.mesh;
-  DihedralRange dihedral;
-  if (options.lattice_only) {
-    statistics.levels = level_counts(levels);
-    mesh = as_uniform(lattice.mesh, std::move(levels));
-    dihedral = lattice_dihedral(lattice.mesh);
-  } else {
-    RefinedMesh refined =
-        refine(lattice, std::move(levels), options.max_tetrahedra, options.threads);
-    statistics.levels = level_counts(refined.lattice_levels);
-    statistics.tets_promoted = refined.tets_promoted;
-    dihedral = refined.dihedral;
-    mesh = as_refined(std::move(refined));
-  }
-  mesh.lattice_vertices = static_cast<std::uint32_t>(places.size());
-
-  clock.start("densities");
-  mesh.densities = sampled_densities(*volume, window, mesh.vertices, places.size(),
-                                     std::move(densities), options.threads);
-  mesh.tet_densities =
-      sampled_tet_densities(*volume, window, mesh, lattice.mesh.spacing, options.threads);
-  statistics.surface_error =
-      surface_distance(surface, mesh.vertices, mesh.surface, lattice.mesh.spacing, options.threads);
-  for (Vec3f& vertex : mesh.vertices) {
-    vertex = volume->grid.to_world(vertex.cast<double>()).cast<float>();
-  }
-  mesh.frame_id = volume->frame_id;
-  mesh.uuid = mesh_uuid(mesh);
-  clock.stop();
-
-  statistics.tetrahedra = mesh.tets.size();
-  statistics.vertices = mesh.vertices.size();
-  statistics.closure = options.lattice_only ? 0
-                                            : static_cast<std::int64_t>(statistics.tetrahedra) -
-                                                  static_cast<std::int64_t>(predicted_tets(wishes));
-  statistics.dihedral = {dihedral.min_angle(), dihedral.max_angle()};
-  statistics.volume = volume_of(mesh);
-  statistics.stages = clock.stages();
-  statistics.peak_bytes = clock.peak_bytes();
-  mesh.statistics = std::move(statistics);
-  if (options.lattice_only) {
-    built.lattice_densities = std::move(tet_density);
-    built.level_wishes = wishes;
-  }
-  return built;
+  return build_mesh(volume, surface_of_mask(mask), options, run);
 }
 
 }  // namespace tissue

@@ -167,7 +167,7 @@ class Filler {
 }  // namespace
 
 RefinedMesh fill_mesh(const RefinableLattice& lattice, const RefinementPlan& plan,
-                      const VertexBlocks& blocks, int threads) {
+                      const VertexBlocks& blocks, const Run& run) {
   RefinedMesh mesh;
   mesh.vertices.resize(blocks.vertex_count);
   mesh.parents.resize(blocks.vertex_count - lattice.mesh.vertices.size());
@@ -177,13 +177,13 @@ RefinedMesh fill_mesh(const RefinableLattice& lattice, const RefinementPlan& pla
 
   Filler filler(lattice, plan, blocks, mesh);
   filler.fill_lattice_vertices();
-  parallel_ranges(plan.edge_levels.size(), threads, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(plan.edge_levels.size(), 1024, run, [&](std::size_t begin, std::size_t end) {
     for (std::size_t e = begin; e < end; ++e) filler.fill_edge(e);
   });
-  parallel_ranges(plan.face_levels.size(), threads, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(plan.face_levels.size(), 1024, run, [&](std::size_t begin, std::size_t end) {
     for (std::size_t f = begin; f < end; ++f) filler.fill_face(f);
   });
-  parallel_ranges(plan.templates.size(), threads, [&](std::size_t begin, std::size_t end) {
+  parallel_ranges(plan.templates.size(), 1024, run, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t> numbers;
     for (std::size_t t = begin; t < end; ++t) filler.fill_tet(t, numbers);
   });

@@ -98,6 +98,35 @@ std::vector<std::uint8_t> wished_levels(const std::vector<double>& densities,
   return levels;
 }
 
+std::vector<double> softest_at_jumps(std::vector<double> means, const std::vector<Tet>& tets,
+                                     const std::vector<float>& densities, double jump) {
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    float softest = densities[tets[t][0]], hardest = softest;
+    for (const std::uint32_t vertex : tets[t]) {
+      softest = std::min(softest, densities[vertex]);
+      hardest = std::max(hardest, densities[vertex]);
+    }
+    if (static_cast<double>(hardest) - static_cast<double>(softest) > jump) {
+      means[t] = static_cast<double>(softest);
+    }
+  }
+  return means;
+}
+
+std::vector<std::uint8_t> surface_levels(const std::vector<Tet>& tets,
+                                         const std::vector<std::uint8_t>& on_boundary,
+                                         const LevelOptions& options) {
+  std::vector<std::uint8_t> levels;
+  levels.reserve(tets.size());
+  for (const Tet& tet : tets) {
+    const bool at_boundary = on_boundary[tet[0]] != 0 || on_boundary[tet[1]] != 0 ||
+                             on_boundary[tet[2]] != 0 || on_boundary[tet[3]] != 0;
+    levels.push_back(
+        static_cast<std::uint8_t>(options.base_level + (at_boundary ? options.sections - 1 : 0)));
+  }
+  return levels;
+}
+
 std::uint64_t predicted_tets(const std::vector<std::uint8_t>& levels) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
   std::array<std::uint64_t, 256> counts{};

@@ -1,9 +1,11 @@
 #include "plan.h"
 
+#include "tissue/base/parallel.h"
 #include "tissue/refine/levels.h"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace tissue {
 namespace {
@@ -81,7 +83,7 @@ std::array<Vec3, 4> corners_of(const LatticeMesh& mesh, std::size_t t) {
 }  // namespace
 
 RefinementPlan plan_refinement(const RefinableLattice& lattice, std::vector<std::uint8_t> levels,
-                               TemplateLibrary& library) {
+                               TemplateLibrary& library, const Run& run) {
   const std::size_t count = lattice.mesh.tets.size();
   const EdgeOrder order(lattice);
   RefinementPlan plan;
@@ -91,22 +93,31 @@ RefinementPlan plan_refinement(const RefinableLattice& lattice, std::vector<std:
 
   // Promotion changes the keys of neighbours, so cut tets are fitted until no level changes; a tet
   // whose key has stayed the same keeps its fit.
+  std::vector<TemplateKey> keys(count);
   std::vector<std::uint32_t> fitted_key(count, 0xffffffffu);
   std::vector<Fit> fits(count);
   for (bool settled = false; !settled;) {
     raise_levels(plan.levels, lattice.edges.tet_edges, lattice.edges.edges.size());
     find_feature_levels(lattice, plan);
-    settled = true;
-    for (std::size_t t = 0; t < count; ++t) {
-      if (lattice.mesh.whole[t] != 0) continue;
-      const TemplateKey key = key_of(lattice, plan, order, t);
-      if (key.packed() == fitted_key[t]) continue;
-      fits[t] = fit(library.blueprint(key), corners_of(lattice.mesh, t));
-      fitted_key[t] = key.packed();
+    parallel_ranges(count, 1024, run, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) keys[t] = key_of(lattice, plan, order, t);
+    });
+    std::vector<std::pair<std::uint32_t, const Blueprint*>> to_fit;
+    for (std::uint32_t t = 0; t < count; ++t) {
+      if (lattice.mesh.whole[t] != 0 || keys[t].packed() == fitted_key[t]) continue;
+      fitted_key[t] = keys[t].packed();
+      to_fit.emplace_back(t, &library.blueprint(keys[t]));
     }
-    for (std::size_t t = 0; t < count; ++t) {
-      if (lattice.mesh.whole[t] != 0 || plan.levels[t] >= finest) continue;
-      if (shape_score(fits[t].range) >= 1.0) continue;
+    parallel_ranges(to_fit.size(), 256, run, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto& [t, blueprint] = to_fit[i];
+        fits[t] = fit(*blueprint, corners_of(lattice.mesh, t));
+      }
+    });
+    settled = true;
+    for (const auto& fitted : to_fit) {
+      const std::uint32_t t = fitted.first;
+      if (plan.levels[t] >= finest || shape_score(fits[t].range) >= 1.0) continue;
       ++plan.levels[t];
       ++plan.tets_promoted;
       settled = false;
@@ -115,10 +126,14 @@ RefinementPlan plan_refinement(const RefinableLattice& lattice, std::vector<std:
 
   plan.templates.resize(count);
   for (std::size_t t = 0; t < count; ++t) {
-    const TemplateKey key = key_of(lattice, plan, order, t);
-    const Fit& chosen = lattice.mesh.whole[t] != 0 ? library.whole_fit(key) : fits[t];
-    plan.templates[t] = &library.filled(key, chosen.choices);
-    plan.dihedral.include(chosen.range);
+    if (lattice.mesh.whole[t] != 0) {
+      const TemplateLibrary::WholeTemplate& whole = library.whole(keys[t]);
+      plan.templates[t] = whole.filled;
+      plan.whole_dihedral.include(whole.range);
+    } else {
+      plan.templates[t] = &library.filled(keys[t], fits[t].choices);
+      plan.cut_dihedral.include(fits[t].range);
+    }
   }
   return plan;
 }

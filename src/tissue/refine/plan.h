@@ -14,12 +14,13 @@ struct RefinementPlan {
   std::vector<std::uint8_t> edge_levels;
   std::vector<std::uint8_t> face_levels;
   std::vector<const Template*> templates;
-  DihedralRange dihedral;
+  /// Angles of the parts of whole and of cut lattice tets.
+  DihedralRange whole_dihedral, cut_dihedral;
   std::size_t tets_promoted = 0;
 };
 
 /// The templates live in `library`.
 RefinementPlan plan_refinement(const RefinableLattice& lattice, std::vector<std::uint8_t> levels,
-                               TemplateLibrary& library);
+                               TemplateLibrary& library, const Run& run);
 
 }  // namespace tissue

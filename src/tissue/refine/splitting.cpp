@@ -142,4 +142,10 @@ std::vector<Splitting> splittings(const SplitPattern& pattern) {
   return search.take();
 }
 
+const std::vector<Splitting>& Splittings::of(const SplitPattern& pattern) {
+  const auto [entry, is_new] = known_.try_emplace({pattern.marks, pattern.diagonal_start});
+  if (is_new) entry->second = splittings(pattern);
+  return entry->second;
+}
+
 }  // namespace tissue

@@ -3,6 +3,8 @@
 #include "tissue/base/types.h"
 
 #include <array>
+#include <map>
+#include <utility>
 #include <vector>
 
 namespace tissue {
@@ -25,6 +27,15 @@ struct SplitPattern {
 /// Every splitting of the pattern that needs no further point, in a fixed order. There is at least
 /// one whenever the diagonals come from a total order of the edges.
 std::vector<Splitting> splittings(const SplitPattern& pattern);
+
+/// The splittings of every pattern that was asked for, made once.
+class Splittings {
+ public:
+  const std::vector<Splitting>& of(const SplitPattern& pattern);
+
+ private:
+  std::map<std::pair<unsigned, std::array<int, 4>>, std::vector<Splitting>> known_;
+};
 
 /// The triangles of one face under the pattern, counter-clockwise seen from outside.
 std::vector<std::array<SplitPoint, 3>> face_triangles(const SplitPattern& pattern, int face);

@@ -96,7 +96,7 @@ Template fill(const Blueprint& blueprint, const Choices& choices) {
       const bool used = p < 4 || (shape.pattern.marks >> (p - 4) & 1u) != 0;
       if (used) numbers[p] = local.number(place_of(part, p));
     }
-    for (const auto& tet : shape.splittings[choices[part.shape]]) {
+    for (const auto& tet : (*shape.splittings)[choices[part.shape]]) {
       result.tets.push_back({numbers[tet[0]], numbers[tet[1]], numbers[tet[2]], numbers[tet[3]]});
     }
     for (int face = 0; face < 4; ++face) {
@@ -140,13 +140,13 @@ Fit fit(const Blueprint& blueprint, const std::array<Vec3, 4>& corners) {
     DihedralRange best;
     double best_score = -1.0;
     std::uint8_t choice = 0;
-    for (std::size_t s = 0; s < shape.splittings.size(); ++s) {
+    for (std::size_t s = 0; s < shape.splittings->size(); ++s) {
       DihedralRange range;
-      for (const auto& tet : shape.splittings[s]) {
+      for (const auto& tet : (*shape.splittings)[s]) {
         range.include(
             dihedral_range(points[tet[0]], points[tet[1]], points[tet[2]], points[tet[3]]));
       }
-      const double score = shape.splittings.size() == 1 ? 0.0 : shape_score(range);
+      const double score = shape.splittings->size() == 1 ? 0.0 : shape_score(range);
       if (score > best_score) {
         best = range;
         best_score = score;
@@ -163,17 +163,19 @@ TemplateLibrary::Entry& TemplateLibrary::entry(const TemplateKey& key) {
   const auto found = entries_.find(key.packed());
   if (found != entries_.end()) return found->second;
   Entry& entry = entries_[key.packed()];
-  entry.blueprint = make_blueprint(key);
+  entry.blueprint = make_blueprint(key, splittings_);
   return entry;
 }
 
 const Blueprint& TemplateLibrary::blueprint(const TemplateKey& key) { return entry(key).blueprint; }
 
-const Fit& TemplateLibrary::whole_fit(const TemplateKey& key) {
-  Entry& here = entry(key);
-  if (!here.has_whole) here.whole = fit(here.blueprint, kWholeCorners);
-  here.has_whole = true;
-  return here.whole;
+const TemplateLibrary::WholeTemplate& TemplateLibrary::whole(const TemplateKey& key) {
+  WholeTemplate& whole = entry(key).whole;
+  if (whole.filled == nullptr) {
+    const Fit best = fit(blueprint(key), kWholeCorners);
+    whole = {&filled(key, best.choices), best.range};
+  }
+  return whole;
 }
 
 const Template& TemplateLibrary::filled(const TemplateKey& key, const Choices& choices) {

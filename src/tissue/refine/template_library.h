@@ -3,7 +3,6 @@
 #include "blueprint.h"
 #include "tissue/base/quality.h"
 
-#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -40,17 +39,29 @@ class TemplateLibrary {
  public:
   const Blueprint& blueprint(const TemplateKey& key);
   const Template& filled(const TemplateKey& key, const Choices& choices);
-  /// The best fit for a tet with the lattice's own shape.
-  const Fit& whole_fit(const TemplateKey& key);
+  /// The best filling of a tet with the lattice's own shape.
+  struct WholeTemplate {
+    const Template* filled = nullptr;
+    DihedralRange range;
+  };
+  const WholeTemplate& whole(const TemplateKey& key);
 
  private:
+  // FNV-1a.
+  struct HashOfBytes {
+    std::size_t operator()(const Choices& bytes) const {
+      std::uint64_t hash = 14695981039346656037u;
+      for (const std::uint8_t byte : bytes) hash = (hash ^ byte) * 1099511628211u;
+      return hash;
+    }
+  };
   struct Entry {
     Blueprint blueprint;
-    Fit whole;
-    bool has_whole = false;
-    std::map<Choices, Template> templates;
+    WholeTemplate whole;
+    std::unordered_map<Choices, Template, HashOfBytes> templates;
   };
   Entry& entry(const TemplateKey& key);
+  Splittings splittings_;
   std::unordered_map<std::uint32_t, Entry> entries_;
 };
 

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstddef>
+
+namespace tissue {
+
+/// Bytes that this process can still take without swapping: what the system says is available, and
+/// no more than its own limit on address space leaves. The largest number where neither is known.
+std::size_t available_memory();
+
+}  // namespace tissue

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+
+namespace tissue {
+
+/// A file below `folder` that somebody else has named: relative, without "..", no longer than 1024
+/// characters, and led out of the folder by no link. `must_exist` asks for a regular file. Returns
+/// its full path. Throws InputError E_PATH.
+std::string confined_path(const std::string& folder, const std::string& name, bool must_exist);
+
+/// A file that appears under its name when it is complete: written under a temporary name beside
+/// it, flushed to the disk and renamed. Whatever goes wrong leaves an old file as it was.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Where to write.
+  const std::string& temporary() const { return temporary_; }
+  /// Throws InputError E_IO if the file cannot be flushed or renamed.
+  void commit();
+
+ private:
+  std::string path_, temporary_;
+};
+
+}  // namespace tissue
