@@ -63,6 +63,63 @@ TEST(CheckMesh, RefusesAFaceOfThreeTets) {
   EXPECT_NE(refusal([&] { check_mesh(mesh); }).find("E_CONFORMITY"), std::string::npos);
 }
 
+TEST(CheckMesh, S1_T16_CountsFlatTetsAndThoseWithACornerTwiceAndListsTheFirst) {
+  TetMesh mesh = two_tets();
+  const tissue::Tet good = mesh.tets[0];
+  for (int i = 0; i < 7; ++i) {
+    mesh.tets.push_back({good[0], good[1], good[2], good[2]});
+    mesh.levels.push_back(0);
+    mesh.tet_densities.push_back(1);
+  }
+  EXPECT_EQ(refusal([&] { check_mesh(mesh); }),
+            "E_MESH_QUALITY: mesh: 7 tets are flat or inverted: 2, 3, 4, 5, 6, …");
+  // Four corners in a plane, as exactly as single precision has it.
+  mesh = two_tets();
+  mesh.vertices.push_back(0.5f * (mesh.vertices[0] + mesh.vertices[1]));
+  mesh.densities.push_back(1);
+  mesh.tets.push_back({0, 1, 2, 5});
+  mesh.levels.push_back(0);
+  mesh.tet_densities.push_back(1);
+  EXPECT_EQ(refusal([&] { check_mesh(mesh); }),
+            "E_MESH_QUALITY: mesh: 1 tets are flat or inverted: 2");
+}
+
+TEST(CheckMesh, S6_RefusesAHangingNode) {
+  // Two tets share a face in place, but one side of it is split at the middle of an edge.
+  TetMesh mesh;
+  mesh.vertices = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {0, 0, -2}, {1, 0, 0}};
+  mesh.tets = {{0, 1, 2, 3}, {0, 2, 5, 4}, {5, 2, 1, 4}};
+  mesh.levels = {0, 0, 0};
+  mesh.densities.assign(6, 1.0f);
+  mesh.tet_densities.assign(3, 1.0f);
+  EXPECT_EQ(refusal([&] { check_mesh(mesh); }).substr(0, 40),
+            "E_CONFORMITY: mesh: 1 vertices hang in t");
+  // The same with both sides split is fine.
+  mesh.tets = {{0, 5, 2, 3}, {5, 1, 2, 3}, {0, 2, 5, 4}, {5, 2, 1, 4}};
+  mesh.levels.push_back(0);
+  mesh.tet_densities.push_back(1.0f);
+  EXPECT_NO_THROW(check_mesh(mesh));
+}
+
+TEST(CheckMesh, S6_RefusesTetsThatMeetInOneVertexOrOneEdgeOnly) {
+  TetMesh mesh = two_tets();
+  mesh.vertices.insert(mesh.vertices.end(), {{2, 1, 1}, {1, 2, 1}, {1, 1, 2}});
+  mesh.densities.assign(mesh.vertices.size(), 1.0f);
+  mesh.tets.push_back({4, 5, 6, 7});
+  mesh.levels.push_back(0);
+  mesh.tet_densities.push_back(1.0f);
+  EXPECT_EQ(refusal([&] { check_mesh(mesh); }),
+            "E_CONFORMITY: mesh: 1 vertices where the boundary is no manifold: vertices 4");
+  mesh = tissue::TetMesh();
+  mesh.vertices = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
+  mesh.densities.assign(6, 1.0f);
+  mesh.tets = {{0, 2, 3, 1}, {0, 4, 5, 1}};
+  mesh.levels = {0, 0};
+  mesh.tet_densities = {1.0f, 1.0f};
+  EXPECT_EQ(refusal([&] { check_mesh(mesh); }),
+            "E_CONFORMITY: mesh: 2 vertices where the boundary is no manifold: vertices 0, 1");
+}
+
 TEST(Inspect, SeesACrackAPinchAndAHangingNode) {
   TetMesh mesh = two_tets();
   mesh.parents = {{0, 1}};

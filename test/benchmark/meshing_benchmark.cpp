@@ -1,35 +1,38 @@
-// What meshing costs: the whole way from a volume in memory to a finished mesh, by size, method and
-// number of threads. Run by scripts/benchmark.
+// What meshing costs: the whole way from a volume in memory to a finished mesh, and the stages of
+// it, by size, method and number of threads. scripts/benchmark runs it and keeps the results.
 #include "support/shapes.h"
-#include "tissue/base/error.h"
 #include "tissue/refine/build_mesh.h"
 
 #include <benchmark/benchmark.h>
 
-#include <cmath>
+#include <map>
 
 namespace {
 
+using tissue::MeshOptions;
+using tissue::Method;
+
+// As large as the paper's brain.
 const tissue_test::VolumePtr& organ() {
   static const tissue_test::VolumePtr volume = tissue_test::organ_phantom({224, 320, 190});
   return volume;
 }
 
-tissue::MeshOptions options_for(double spacing, int threads) {
-  tissue::MeshOptions options;
-  options.spacing = spacing;
-  options.threads = threads;
-  options.project_boundary = false;
+// Arguments of every benchmark: spacing of the lattice [10 µm], threads.
+MeshOptions options_for(const benchmark::State& state, Method method) {
+  MeshOptions options;
+  options.method = method;
+  options.spacing = 1e-5 * static_cast<double>(state.range(0));
+  options.threads = static_cast<int>(state.range(1));
   return options;
 }
 
-void build(benchmark::State& state, const tissue::MeshOptions& options) {
+void build(benchmark::State& state, const MeshOptions& options) {
   tissue::MeshStatistics statistics;
   std::map<std::string, double> stages;
   double cpu_seconds = 0.0;
   for (auto _ : state) {
-    const tissue::BuiltMesh built = tissue::build_mesh(organ(), nullptr, options);
-    statistics = built.mesh.statistics;
+    statistics = tissue::build_mesh(organ(), nullptr, options).mesh.statistics;
     for (const tissue::StageCost& stage : statistics.stages) {
       stages[stage.name] += stage.cpu_seconds;
       cpu_seconds += stage.cpu_seconds;
@@ -40,15 +43,47 @@ void build(benchmark::State& state, const tissue::MeshOptions& options) {
   state.counters["tets"] = tets;
   state.counters["tets_per_cpu_s"] = tets * rounds / cpu_seconds;
   state.counters["bytes_per_tet"] = static_cast<double>(statistics.peak_bytes) / tets;
-  for (const auto& [name, seconds] : stages) state.counters["s_" + name] = seconds / rounds;
+  state.counters["astray_percent"] = 100.0 *
+                                     static_cast<double>(statistics.boundary_vertices_astray) /
+                                     static_cast<double>(statistics.boundary_vertices);
+  for (const char* stage : {"lattice", "levels", "refinement", "projection", "densities"}) {
+    state.counters[std::string("s_") + stage] = stages[stage] / rounds;
+  }
 }
 
-void density(benchmark::State& state) {
-  build(state,
-        options_for(1e-5 * static_cast<double>(state.range(0)), static_cast<int>(state.range(1))));
+void density_unprojected(benchmark::State& state) {
+  MeshOptions options = options_for(state, Method::kDensity);
+  options.project_boundary = false;
+  build(state, options);
+}
+
+void density_4_sweeps(benchmark::State& state) {
+  MeshOptions options = options_for(state, Method::kDensity);
+  options.projection = {4, 0};
+  build(state, options);
+}
+
+void density(benchmark::State& state) { build(state, options_for(state, Method::kDensity)); }
+void surface(benchmark::State& state) { build(state, options_for(state, Method::kSurface)); }
+void uniform(benchmark::State& state) { build(state, options_for(state, Method::kUniform)); }
+
+// From 10⁴ to 3·10⁷ tets.
+void sizes(benchmark::internal::Benchmark* benchmark) {
+  for (const int spacing : {5500, 2400, 1020, 530, 375}) benchmark->Args({spacing, 1});
+  benchmark->Args({1020, 2});
+  benchmark->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(2.0);
+}
+
+void one_size(benchmark::internal::Benchmark* benchmark, int spacing) {
+  for (const int threads : {1, 2}) benchmark->Args({spacing, threads});
+  benchmark->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(2.0);
 }
 
 }  // namespace
 
-BENCHMARK(density)->Args({1000, 1})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(density_unprojected)->Apply(sizes);
+BENCHMARK(density_4_sweeps)->Apply(sizes);
+BENCHMARK(density)->Apply(sizes);
+BENCHMARK(surface)->Apply([](auto* benchmark) { one_size(benchmark, 1020); });
+BENCHMARK(uniform)->Apply([](auto* benchmark) { one_size(benchmark, 340); });
 BENCHMARK_MAIN();

@@ -1,20 +1,24 @@
 #!/usr/bin/env python3
 """Every node survives bad volumes, requests and poses, keeps what it had, and serves on."""
 import math
+import os
 import struct
 import threading
+import time
 import unittest
 import xmlrpc.client
 
+import actionlib
 import rosgraph
 import rospy
 import rostest
+from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from sensor_msgs import point_cloud2
 from sensor_msgs.msg import PointCloud2
-from soft_tissue_sim.msg import Result, SimulationStatus, TetMesh, Volume
-from soft_tissue_sim.srv import BuildMesh, BuildMeshRequest
+from soft_tissue_sim.msg import BuildMeshAction, BuildMeshGoal, Result, SimulationStatus, TetMesh, Volume
+from soft_tissue_sim.srv import BuildMesh, BuildMeshRequest, MeshFile
 from tf2_msgs.msg import TFMessage
 
 SIZE = 32
@@ -223,6 +227,73 @@ class BadInput(unittest.TestCase):
         busy = next(a for a in answers if a.code == Result.E_BUSY)
         self.assertEqual(busy.message, "build_mesh: a build is running")
         self.good_mesh()
+
+    def test_5b_M8_M9_the_action_reports_its_progress_is_busy_for_others_and_can_be_cancelled(self):
+        good = self.good_mesh()
+        client = actionlib.SimpleActionClient("mesher_node/build", BuildMeshAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(10)))
+        stages = []
+        goal = BuildMeshGoal(iso_value=100.0, spacing=0.006, level_sections=2)
+        client.send_goal(goal, feedback_cb=lambda f: stages.append((f.stage, f.fraction, f.tetrahedra)))
+        self.assertTrue(client.wait_for_result(rospy.Duration(60)))
+        self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED)
+        self.assertEqual(client.get_result().result.code, Result.OK)
+        self.assertEqual(client.get_result().statistics.tetrahedra, len(good.tetrahedra) // 4)
+        self.wait_until(lambda: stages and stages[-1][1] == 1.0)
+        # The client hears nothing before it knows that the goal is active.
+        self.assertLessEqual({"projection", "densities"}, {s[0] for s in stages})
+        self.assertLessEqual({s[0] for s in stages},
+                             {"lattice", "levels", "refinement", "projection", "densities"})
+        self.assertEqual([s[1] for s in stages], sorted(s[1] for s in stages))
+        self.assertEqual(stages[-1][2], len(good.tetrahedra) // 4)
+        # A slow one, which a second goal finds running.
+        slow = BuildMeshGoal(iso_value=100.0, spacing=0.0007, level_sections=1, project_boundary=True)
+        started = []
+        client.send_goal(slow, feedback_cb=lambda f: started.append(f.stage))
+        self.wait_until(lambda: started)
+        other = actionlib.SimpleActionClient("mesher_node/build", BuildMeshAction)
+        other.wait_for_server(rospy.Duration(10))
+        other.send_goal_and_wait(goal, rospy.Duration(60))
+        if client.get_state() == GoalStatus.ACTIVE:
+            self.assertEqual(other.get_result().result.code, Result.E_BUSY)
+        before = rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid
+        client.cancel_goal()
+        cancelled_at = time.monotonic()
+        self.assertTrue(client.wait_for_result(rospy.Duration(60)))
+        self.assertLess(time.monotonic() - cancelled_at, 2.0)
+        self.assertEqual(client.get_state(), GoalStatus.PREEMPTED)
+        self.assertEqual(client.get_result().result.code, Result.E_CANCELLED)
+        self.assertEqual(rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid, before)
+        self.assertEqual(self.good_mesh().uuid, good.uuid)
+
+    def test_5c_M11_M12_meshes_are_saved_and_loaded_below_the_folder_and_nowhere_else(self):
+        good = self.good_mesh()
+        save = rospy.ServiceProxy("mesher_node/save_mesh", MeshFile)
+        load = rospy.ServiceProxy("mesher_node/load_mesh", MeshFile)
+        folder = rospy.get_param("mesher_node/folder")
+        answer = save("ball.vtu")
+        self.assertEqual((answer.result.code, answer.uuid), (Result.OK, good.uuid), answer.result.message)
+        self.assertEqual(save("ball.pcd").result.code, Result.OK)
+        with open(os.path.join(folder, "ball.pcd"), "rb") as file:
+            head = file.read(400)
+        self.assertIn(b"POINTS %d\n" % len(good.densities), head)
+        for path in ("../ball.vtu", "/tmp/ball.vtu", "", "x" * 5000, "nowhere/ball.vtu", "a\0b"):
+            for service in (save, load):
+                self.assertEqual(service(path).result.code, Result.E_PATH, path[:30])
+        # Another mesh, then back again.
+        self.assertEqual(self.build(request(spacing=0.008)).result.code, Result.OK)
+        self.assertNotEqual(rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid, good.uuid)
+        answer = load("ball.vtu")
+        self.assertEqual((answer.result.code, answer.uuid), (Result.OK, good.uuid), answer.result.message)
+        self.wait_until(lambda: rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid == good.uuid)
+        path = os.path.join(folder, "ball.vtu")
+        with open(path, "rb") as file:
+            content = bytearray(file.read())
+        content[len(content) // 2] ^= 4
+        with open(os.path.join(folder, "broken.vtu"), "wb") as file:
+            file.write(content)
+        self.assertEqual(load("broken.vtu").result.code, Result.E_FILE)
+        self.assertEqual(rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid, good.uuid)
 
     def send_pose(self, stamp, place=(CENTRE, CENTRE, 100.0), frame="patient", w=1.0):
         pose = PoseStamped()

@@ -8,6 +8,7 @@
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
+#include <vtkExecutive.h>
 #include <vtkFieldData.h>
 #include <vtkFloatArray.h>
 #include <vtkIdList.h>
@@ -230,6 +231,7 @@ TetMesh read_mesh(const std::string& path, bool only_own) {
   observer->SetCallback(note);
   observer->SetClientData(&failed);
   reader->AddObserver(vtkCommand::ErrorEvent, observer);
+  reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
   reader->SetParserErrorObserver(observer);
   reader->SetReaderErrorObserver(observer);
   reader->ReadFromInputStringOn();

@@ -6,11 +6,11 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCleanPolyData.h>
-#include <vtkFlyingEdges3D.h>
-#include <vtkFloatArray.h>
+#include <vtkExecutive.h>
 #include <vtkIdList.h>
 #include <vtkImageData.h>
 #include <vtkImageStencilData.h>
+#include <vtkMarchingCubes.h>
 #include <vtkNew.h>
 #include <vtkOBJReader.h>
 #include <vtkPLYReader.h>
@@ -50,7 +50,10 @@ PolyData output_of(const std::string& path) {
   vtkNew<Reader> reader;
   vtkNew<vtkCallbackCommand> silent;
   silent->SetCallback([](vtkObject*, unsigned long, void*, void*) {});
-  reader->AddObserver(vtkCommand::ErrorEvent, silent);
+  for (const auto event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) {
+    reader->AddObserver(event, silent);
+    reader->GetExecutive()->AddObserver(event, silent);
+  }
   reader->SetFileName(path.c_str());
   reader->Update();
   return reader->GetErrorCode() == 0 ? PolyData(reader->GetOutput()) : nullptr;
@@ -152,7 +155,7 @@ std::vector<std::uint8_t> voxels_inside(vtkPolyData* poly, const Grid& grid) {
   return inside;
 }
 
-// Voxels with a neighbour, in the cube around them, on the other side.
+// The corners of all cells that the surface crosses, and the voxels around them.
 std::vector<std::uint8_t> next_to_border(const std::vector<std::uint8_t>& inside,
                                          const Grid& grid) {
   std::vector<std::uint8_t> result(inside.size(), 0);
@@ -160,15 +163,25 @@ std::vector<std::uint8_t> next_to_border(const std::vector<std::uint8_t>& inside
   const auto index = [&](std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t z) {
     return static_cast<std::size_t>(x + size[0] * (y + size[1] * z));
   };
-  // Cell by cell: all corners of a cell that the surface crosses.
+  const auto is_crossed = [&](std::ptrdiff_t x, std::ptrdiff_t y, std::ptrdiff_t z) {
+    int sum = 0;
+    for (int i = 0; i < 8; ++i) sum += inside[index(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2))];
+    return sum != 0 && sum != 8;
+  };
   for (std::ptrdiff_t z = 0; z + 1 < size[2]; ++z) {
     for (std::ptrdiff_t y = 0; y + 1 < size[1]; ++y) {
       for (std::ptrdiff_t x = 0; x + 1 < size[0]; ++x) {
-        int sum = 0;
-        for (int i = 0; i < 8; ++i)
-          sum += inside[index(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2))];
-        if (sum == 0 || sum == 8) continue;
-        for (int i = 0; i < 8; ++i) result[index(x + (i & 1), y + (i >> 1 & 1), z + (i >> 2))] = 1;
+        if (!is_crossed(x, y, z)) continue;
+        for (std::ptrdiff_t c = std::max(z - 1, std::ptrdiff_t{0}); c < std::min(z + 3, size[2]);
+             ++c) {
+          for (std::ptrdiff_t b = std::max(y - 1, std::ptrdiff_t{0}); b < std::min(y + 3, size[1]);
+               ++b) {
+            const std::ptrdiff_t first = std::max(x - 1, std::ptrdiff_t{0});
+            const std::ptrdiff_t last = std::min(x + 3, size[0]);
+            std::fill_n(result.begin() + static_cast<std::ptrdiff_t>(index(first, b, c)),
+                        last - first, std::uint8_t{1});
+          }
+        }
       }
     }
   }
@@ -226,6 +239,11 @@ ImplicitSurface surface_of_triangles(TriangleSurface surface, const Grid& grid) 
 
   const std::vector<std::uint8_t> inside = voxels_inside(poly, grid);
   const std::vector<std::uint8_t> near = next_to_border(inside, grid);
+  if (std::find(inside.begin(), inside.end(), 1) == inside.end()) {
+    throw InputError(ErrorCode::kEmptySurface,
+                     "surface: no voxel of the volume lies inside; it is " +
+                         to_text(extent_of(surface.vertices)) + " m across");
+  }
   vtkNew<vtkStaticCellLocator> locator;
   locator->SetDataSet(poly);
   locator->BuildLocator();
@@ -234,9 +252,7 @@ ImplicitSurface surface_of_triangles(TriangleSurface surface, const Grid& grid) 
   auto distance = std::make_shared<Volume>();
   distance->grid = grid;
   std::vector<float> values(inside.size());
-  bool any = false;
   for (std::size_t i = 0; i < inside.size(); ++i) {
-    any = any || inside[i] != 0;
     double to_surface = 2.0 * grid.spacing.maxCoeff();
     if (near[i] != 0) {
       const std::size_t yz = i / grid.size[0];
@@ -255,11 +271,6 @@ ImplicitSurface surface_of_triangles(TriangleSurface surface, const Grid& grid) 
     }
     values[i] = static_cast<float>(inside[i] != 0 ? -to_surface : to_surface);
   }
-  if (!any) {
-    throw InputError(ErrorCode::kEmptySurface,
-                     "surface: no voxel of the volume lies inside; it spans " +
-                         to_text(extent_of(surface.vertices)) + " m across");
-  }
   distance->voxels = std::move(values);
   return {distance, 0.0, false, value_range(*distance)};
 }
@@ -276,8 +287,9 @@ TriangleSurface marching_cubes(const ImplicitSurface& surface) {
   image->SetOrigin(origin.data());
   image->AllocateScalars(VTK_FLOAT, 1);
   auto* values = static_cast<float*>(image->GetScalarPointer());
-  const auto outside =
-      static_cast<float>(surface.inside_above ? surface.range[0] - 1.0 : surface.range[1] + 1.0);
+  // As far beyond the iso value as the innermost value is on this side.
+  const double innermost = surface.range[surface.inside_above ? 1 : 0];
+  const auto outside = static_cast<float>(2.0 * surface.iso - innermost);
   std::visit(
       [&](const auto& voxels) {
         std::size_t next = 0;
@@ -297,12 +309,13 @@ TriangleSurface marching_cubes(const ImplicitSurface& surface) {
         }
       },
       field.voxels);
-  vtkNew<vtkFlyingEdges3D> contour;
+  vtkNew<vtkMarchingCubes> contour;
   contour->SetInputData(image);
   // Exactly on a value of the voxels triangles would have no area.
   const double range = surface.range[1] - surface.range[0];
   contour->SetValue(0, surface.iso + 1e-6 * (range > 0.0 ? range : 1.0));
   contour->ComputeNormalsOff();
+  contour->ComputeScalarsOff();
   contour->Update();
   TriangleSurface result = surface_from(contour->GetOutput());
   for (Vec3& vertex : result.vertices) vertex = field.grid.to_world(vertex);

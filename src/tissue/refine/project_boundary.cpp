@@ -71,7 +71,9 @@ class Projector {
     const VertexRings rings = vertex_rings(inner, tets_, vertices_.size(), run_);
     std::vector<Vec3f> displacement(vertices_.size(), Vec3f::Zero());
     for (std::size_t i = 0; i < rings_.vertices.size(); ++i) {
-      displacement[rings_.vertices[i]] = vertices_[rings_.vertices[i]] - before_[i];
+      // What is held back pulls with the whole way that it has still to go.
+      const Vec3f& end = astray_[i] != 0 ? targets_[i] : vertices_[rings_.vertices[i]];
+      displacement[rings_.vertices[i]] = end - before_[i];
     }
     for (const auto& colour : rings.colours) {
       parallel_ranges(colour.size(), 128, run_, [&](std::size_t begin, std::size_t end) {
@@ -186,9 +188,9 @@ std::vector<std::uint8_t> project_boundary(const ImplicitSurface& surface,
     projector.aim(f, voxel, reach);
     for (int i = 0; i < options.sweeps && !projector.all_arrived(); ++i) projector.sweep();
     if (options.sweeps_after_following == 0 || projector.all_arrived()) return;
-    projector.follow();
-    projector.aim(f, voxel, reach);
     for (int i = 0; i < options.sweeps_after_following && !projector.all_arrived(); ++i) {
+      projector.follow();
+      projector.aim(f, voxel, reach);
       projector.sweep();
     }
   });
