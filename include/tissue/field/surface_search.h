@@ -52,18 +52,41 @@ inline const std::array<Vec3, 26>& search_directions() {
   return directions;
 }
 
-/// The first crossing along the gradient of f, or where there is none within `reach` [m] the
-/// nearest crossing in 26 directions. `voxel` is the smallest spacing of the field [m].
+/// Newton's method along one line, begun by the slope: two or three steps where f is smooth. Gives
+/// up where they do not settle to within `accuracy` [m], or lead back or farther than `limit`.
 template <class Function>
-SurfacePoint search_surface(const Function& f, const Vec3& from, double voxel, double reach) {
+SurfacePoint newton_along(const Function& f, const Vec3& from, double f_from, double slope,
+                          const Vec3& direction, double accuracy, double limit) {
+  double before = 0.0, f_before = std::abs(f_from), distance = f_before / slope;
+  for (int i = 0; i < 4 && distance > 0.0 && distance <= limit; ++i) {
+    // Positive on the side of the start.
+    const double f_here = std::copysign(1.0, f_from) * f(from + distance * direction);
+    const double next = distance - f_here * (distance - before) / (f_here - f_before);
+    if (std::abs(next - distance) <= accuracy) return {from + next * direction, next, true};
+    before = distance;
+    f_before = f_here;
+    distance = next;
+  }
+  return {from, 0.0, false};
+}
+
+/// The first crossing along the gradient of f, or where there is none within `reach` [m] the
+/// nearest crossing in 26 directions. `voxel` is the smallest spacing of the field [m]; `accuracy`
+/// is a fraction of it.
+template <class Function>
+SurfacePoint search_surface(const Function& f, const Vec3& from, double voxel, double reach,
+                            double accuracy = 1e-3) {
   const auto [value, gradient] = f.with_gradient(from);
   if (value == 0.0) return {from, 0.0, true};
   const double step = 0.5 * voxel, slope = gradient.norm();
   if (slope > 0.0) {
     const double estimate = std::abs(value) / slope;
-    // Close by, one step of Newton's method is as good as a search.
     const Vec3 downhill = (value > 0.0 ? -1.0 : 1.0) / slope * gradient;
-    if (estimate < 1e-3 * voxel) return {from + estimate * downhill, estimate, true};
+    if (estimate < accuracy * voxel) return {from + estimate * downhill, estimate, true};
+    // Within a voxel there is hardly more than one crossing to be found.
+    const SurfacePoint near =
+        newton_along(f, from, value, slope, downhill, accuracy * voxel, std::min(voxel, reach));
+    if (near.found) return near;
     const double first = std::min(1.3 * estimate, step);
     const SurfacePoint found = search_along(f, from, value, downhill, first, step, reach);
     if (found.found) return found;

@@ -4,6 +4,13 @@
 #include "tissue/field/surface_search.h"
 
 namespace tissue {
+namespace {
+
+// Distances are good to this fraction of a voxel where the surface is near, a tenth of what counts
+// as astray.
+constexpr double kAccuracy = 0.01;
+
+}  // namespace
 
 std::vector<std::uint32_t> vertices_of(const std::vector<Triangle>& triangles,
                                        std::size_t vertex_count) {
@@ -28,7 +35,8 @@ SurfaceDistance surface_distance(const ImplicitSurface& surface, const std::vect
     parallel_ranges(wanted.size(), 256, run, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Vec3 place = vertices[wanted[i]].template cast<double>();
-        distances[i] = static_cast<float>(search_surface(f, place, voxel, reach).distance);
+        distances[i] =
+            static_cast<float>(search_surface(f, place, voxel, reach, kAccuracy).distance);
       }
     });
   });

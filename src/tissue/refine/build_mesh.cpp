@@ -91,13 +91,16 @@ StuffingOptions lattice_for(const Organ& organ, const MeshOptions& options,
   }
   // A lattice tet has a volume of spacing³/12.
   stuffing.spacing = std::cbrt(12.0 * voxel_volume_inside(organ.surface) * growth / wished);
+  // What a total costs to find is told apart from what the mesh costs.
+  const char* stage = by_total ? "search" : "lattice";
+  clock.start(stage);
   return search_lattice(stuffing, wished, by_total ? 0.002 : 0.02, [&](const StuffingOptions& at) {
-    if (by_design) {
-      return static_cast<double>(design_mesh(organ, at, options, library, clock, run).tetrahedra);
-    }
-    clock.start("lattice");
-    run.enter({"lattice", 0.0, 0});
-    return static_cast<double>(count_stuffed(organ.surface, at, run));
+    run.enter({stage, 0.0, 0});
+    if (!by_design) return static_cast<double>(count_stuffed(organ.surface, at, run));
+    StageClock unused;
+    Run quiet = run;
+    quiet.report = nullptr;
+    return static_cast<double>(design_mesh(organ, at, options, library, unused, quiet).tetrahedra);
   });
 }
 
