@@ -1,0 +1,73 @@
+#pragma once
+
+#include "ros/parameters.h"
+#include "tissue/base/error.h"
+
+namespace tissue_ros {
+
+// From the request of BuildMesh.srv or the goal of BuildMesh.action, which have the same fields, to
+// the core's options. Each throws tissue::InputError that names the field and the value.
+
+inline tissue::Method method_from(const std::string& name) {
+  if (name.empty() || name == "density") return tissue::Method::kDensity;
+  if (name == "uniform") return tissue::Method::kUniform;
+  if (name == "surface") return tissue::Method::kSurface;
+  throw tissue::InputError(tissue::ErrorCode::kParam, "method: '" + name.substr(0, 40) +
+                                                          "' is not density, uniform or surface");
+}
+
+template <class Request>
+std::map<std::int64_t, double> label_densities_from(const Request& request) {
+  if (request.labels.size() != request.label_densities.size()) {
+    throw tissue::InputError(tissue::ErrorCode::kSizeMismatch,
+                             "label_densities: " + std::to_string(request.label_densities.size()) +
+                                 " for " + std::to_string(request.labels.size()) + " labels");
+  }
+  std::map<std::int64_t, double> densities;
+  for (std::size_t i = 0; i < request.labels.size(); ++i) {
+    densities[request.labels[i]] = request.label_densities[i];
+  }
+  return densities;
+}
+
+template <class Request>
+tissue::Component component_from(const Request& request) {
+  tissue::Component component;
+  if (request.all_components) component.choice = tissue::Component::Choice::kAll;
+  if (request.component_at_place) {
+    component.choice = tissue::Component::Choice::kNearest;
+    const auto& place = request.component_place;
+    component.place = {place.x, place.y, place.z};
+  }
+  return component;
+}
+
+template <class Request>
+tissue::MeshOptions options_from(const Request& request, const MesherNodeParameters& parameters) {
+  const auto small = [](std::uint32_t value) {
+    return static_cast<int>(std::min<std::uint32_t>(value, 1000000));
+  };
+  tissue::MeshOptions options;
+  options.method = method_from(request.method);
+  options.iso_value = request.iso_value;
+  options.spacing = request.spacing;
+  options.target_tetrahedra = request.target_tetrahedra;
+  options.initial_tetrahedra = request.initial_tetrahedra;
+  options.levels.sections = small(request.level_sections);
+  options.levels.base_level = small(request.base_level);
+  options.levels.smooth_levels = small(request.smooth_levels);
+  options.keep_interfaces = request.keep_interfaces;
+  options.project_boundary = request.project_boundary;
+  if (request.d_max != 0.0) options.levels.d_max = request.d_max;
+  // Not equal also where one of them is not a number, which is then refused by name.
+  if (!(request.window_low == request.window_high)) {
+    options.window = {{request.window_low, request.window_high}};
+  }
+  options.label_densities = label_densities_from(request);
+  options.component = component_from(request);
+  options.max_tetrahedra = static_cast<std::uint64_t>(std::max(parameters.max_tetrahedra, 1));
+  options.threads = parameters.threads;
+  return options;
+}
+
+}  // namespace tissue_ros
