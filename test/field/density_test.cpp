@@ -52,7 +52,7 @@ TEST(SampleTetDensities, IntegratesALinearDensityExactlyAtEverySize) {
                                       {0.003f, 0.031f, 0.006f},
                                       {0.007f, 0.004f, 0.036f}};
   const Vec3f mean = 1000.0f / 4.0f * (corners[0] + corners[1] + corners[2] + corners[3]);
-  for (const double edge : {0.0005, 0.004, 0.011, 0.03, 0.1}) {
+  for (const double edge : {0.0005, 0.004, 0.005, 0.011, 0.03, 0.1}) {
     EXPECT_NEAR(sampled(volume, corners, edge), density(mean.x(), mean.y(), mean.z()), 1e-3);
   }
 }

@@ -174,7 +174,7 @@ struct BadRequest {
   std::function<void(MeshOptions&)> spoil;
 };
 
-TEST(BuildMesh, M1_to_M4_RefusesBadRequestsByFieldAndValue) {
+TEST(BuildMesh, M1_M2_M3_M4_RefusesBadRequestsByFieldAndValue) {
   const Shape ball = tissue_test::synthetic_shapes()[0];
   const double nan = std::nan("");
   const std::vector<BadRequest> requests = {

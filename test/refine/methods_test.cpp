@@ -209,7 +209,32 @@ TEST(Methods, V13_NoiseOfAHundredThousandComponentsKeepsOneAndCountsTheRest) {
   EXPECT_NEAR(mesh.statistics.volume, ball, 0.1 * ball);
 }
 
-TEST(Methods, M1_to_M4_TotalsThatCannotBeAreRefused) {
+TEST(Methods, V15_AVolumeTooLargeForAMessageIsMeshedFromMemory) {
+  // 1024³ voxels: a gigabyte, with a ball in it.
+  constexpr std::uint32_t kSize = 1024;
+  auto volume = std::make_shared<Volume>();
+  volume->grid.size = {kSize, kSize, kSize};
+  volume->grid.spacing = Vec3::Constant(2e-4);
+  std::vector<std::uint8_t> values(volume->grid.voxel_count(), 0);
+  constexpr double kRadius = 400.0;
+  for (std::uint32_t z = 0; z < kSize; ++z) {
+    for (std::uint32_t y = 0; y < kSize; ++y) {
+      const double squared = kRadius * kRadius - std::pow(y - 512.0, 2) - std::pow(z - 512.0, 2);
+      if (squared <= 0.0) continue;
+      const auto half = static_cast<std::ptrdiff_t>(std::sqrt(squared));
+      const auto row =
+          static_cast<std::ptrdiff_t>(std::size_t{kSize} * (y + std::size_t{kSize} * z));
+      std::fill_n(values.begin() + row + 512 - half, 2 * half, std::uint8_t{100});
+    }
+  }
+  volume->voxels = std::move(values);
+  const TetMesh mesh = build_mesh(volume, nullptr, options_for(Method::kDensity, 0.008)).mesh;
+  expect_conforming(mesh);
+  const double ball = 4.0 / 3.0 * M_PI * std::pow(kRadius * 2e-4, 3);
+  EXPECT_NEAR(mesh.statistics.volume, ball, 0.01 * ball);
+}
+
+TEST(Methods, M3_TotalsThatCannotBeAreRefused) {
   const auto organ = tissue_test::organ_phantom({32, 32, 32});
   MeshOptions options = options_for(Method::kDensity, 0.004);
   options.target_tetrahedra = 1000;

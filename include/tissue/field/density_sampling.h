@@ -12,10 +12,10 @@ std::vector<float> sample_densities(const Volume& volume, const DensityWindow& w
                                     const std::vector<Vec3f>& places, std::size_t begin,
                                     std::vector<float> densities, const Run& run);
 
-/// The mean density over every tet, by the midpoint rule on n³ parts of equal volume: n, up to 8,
-/// grows with the tet's size until a part's long edge is at most 4 voxels: a part then holds about
-/// five, and a trilinear sample blends eight. `vertices` are in the grid's frame; a tet of level l
-/// has long edges of about `spacing` / 2^l [m].
+/// The mean density over every tet, by sampling it at 1, 4 or n³ places (n up to 8): as many as it
+/// takes for each to stand for no more than about five voxels, of which a trilinear sample blends
+/// eight. `vertices` are in the grid's frame; a tet of level l has long edges of about `spacing` /
+/// 2^l [m].
 std::vector<float> sample_tet_densities(const Volume& volume, const DensityWindow& window,
                                         const std::vector<Vec3f>& vertices,
                                         const std::vector<Tet>& tets,
