@@ -127,6 +127,8 @@ void MesherNode::build_if_wanted() {
   Response unused;
   const Outcome outcome = guarded([&] { build(request_from_parameters(), unused, nullptr); });
   if (!outcome.ok()) report("build on volume", outcome);
+  // Somebody was faster: the wish stands.
+  if (unused.result.code == soft_tissue_sim::Result::E_BUSY) build_wanted_ = true;
 }
 
 template <class Asked, class Answer>
