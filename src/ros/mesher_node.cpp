@@ -42,7 +42,7 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
                build_handle.advertiseService("save_mesh", &MesherNode::save, this),
                build_handle.advertiseService("load_mesh", &MesherNode::load, this)};
   action_ = std::make_unique<ActionServer>(
-      build_handle, "build", [this](const Goal& goal) { pursue(goal); },
+      build_handle, "build", [this](const Goal& goal) { take_goal(goal); },
       [this](const Goal& goal) { cancel(goal); }, false);
   action_->start();
 
@@ -64,6 +64,7 @@ MesherNode::~MesherNode() {
   ending_ = true;
   *cancelled_ = true;
   for (std::thread& thread : build_threads_) thread.join();
+  if (pursuit_.joinable()) pursuit_.join();
 }
 
 void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char* name,
@@ -93,8 +94,23 @@ bool MesherNode::serve(Request& request, Response& response) {
   return true;
 }
 
-void MesherNode::pursue(Goal goal) {
+void MesherNode::take_goal(Goal goal) {
+  if (pursuing_.exchange(true)) {
+    soft_tissue_sim::BuildMeshResult busy;
+    busy.result = to_message(ErrorCode::kBusy, "build: a build is running");
+    goal.setRejected(busy, busy.result.message);
+    return;
+  }
+  // roscpp delivers the next goal only after this returns.
+  if (pursuit_.joinable()) pursuit_.join();
   goal.setAccepted();
+  pursuit_ = std::thread([this, goal] {
+    pursue(goal);
+    pursuing_ = false;
+  });
+}
+
+void MesherNode::pursue(Goal goal) {
   soft_tissue_sim::BuildMeshResult result;
   build(*goal.getGoal(), result, [&](const tissue::Progress& progress) {
     soft_tissue_sim::BuildMeshFeedback feedback;

@@ -45,6 +45,7 @@ class MesherNode {
 
   void take_volume(const soft_tissue_sim::Volume& message, const char* name, VolumePtr& slot);
   bool serve(Request& request, Response& response);
+  void take_goal(Goal goal);
   void pursue(Goal goal);
   void cancel(Goal goal);
   bool save(FileRequest& request, FileResponse& response);
@@ -83,6 +84,8 @@ class MesherNode {
   ros::WallTimer diagnostics_timer_;
   std::atomic<bool> build_wanted_{false}, ending_{false};
   std::vector<std::thread> build_threads_;
+  std::atomic<bool> pursuing_{false};
+  std::thread pursuit_;
 };
 
 }  // namespace tissue_ros

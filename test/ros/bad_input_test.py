@@ -246,24 +246,26 @@ class BadInput(unittest.TestCase):
                              {"lattice", "levels", "refinement", "projection", "densities"})
         self.assertEqual([s[1] for s in stages], sorted(s[1] for s in stages))
         self.assertEqual(stages[-1][2], len(good.tetrahedra) // 4)
-        # A slow one, which a second goal finds running.
-        slow = BuildMeshGoal(iso_value=100.0, spacing=0.0007, level_sections=1, project_boundary=True)
-        started = []
-        client.send_goal(slow, feedback_cb=lambda f: started.append(f.stage))
-        self.wait_until(lambda: started)
+        # A slow one, which a second goal finds running, and which is then cancelled; another try where
+        # it was faster than both.
+        slow = BuildMeshGoal(iso_value=100.0, spacing=0.0003, level_sections=1, project_boundary=True)
         other = actionlib.SimpleActionClient("mesher_node/build", BuildMeshAction)
-        other.wait_for_server(rospy.Duration(10))
-        other.send_goal_and_wait(goal, rospy.Duration(60))
-        if client.get_state() == GoalStatus.ACTIVE:
-            self.assertEqual(other.get_result().result.code, Result.E_BUSY)
-        before = rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid
-        client.cancel_goal()
-        cancelled_at = time.monotonic()
-        self.assertTrue(client.wait_for_result(rospy.Duration(60)))
-        self.assertLess(time.monotonic() - cancelled_at, 2.0)
+        self.assertTrue(other.wait_for_server(rospy.Duration(10)))
+        for _ in range(5):
+            started = []
+            client.send_goal(slow, feedback_cb=lambda f: started.append(f.stage))
+            self.wait_until(lambda: started)
+            other.send_goal_and_wait(goal, rospy.Duration(60))
+            client.cancel_goal()
+            cancelled_at = time.monotonic()
+            self.assertTrue(client.wait_for_result(rospy.Duration(60)))
+            took = time.monotonic() - cancelled_at
+            if client.get_state() == GoalStatus.PREEMPTED:
+                break
+        self.assertEqual(other.get_result().result.code, Result.E_BUSY)
         self.assertEqual(client.get_state(), GoalStatus.PREEMPTED)
         self.assertEqual(client.get_result().result.code, Result.E_CANCELLED)
-        self.assertEqual(rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid, before)
+        self.assertLess(took, 2.0)
         self.assertEqual(self.good_mesh().uuid, good.uuid)
 
     def test_5c_M11_M12_meshes_are_saved_and_loaded_below_the_folder_and_nowhere_else(self):
