@@ -62,8 +62,10 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
 
 MesherNode::~MesherNode() {
   ending_ = true;
-  *cancelled_ = true;
+  *node_ending_ = true;
   for (std::thread& thread : build_threads_) thread.join();
+  // No goal can come any more.
+  *goal_cancelled_ = true;
   if (pursuit_.joinable()) pursuit_.join();
 }
 
@@ -89,7 +91,9 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
 }
 
 bool MesherNode::serve(Request& request, Response& response) {
-  build(request, response, nullptr);
+  tissue::Run run;
+  run.cancelled = node_ending_;
+  build(request, response, run);
   // Returning false would lose the response.
   return true;
 }
@@ -103,22 +107,29 @@ void MesherNode::take_goal(Goal goal) {
   }
   // roscpp delivers the next goal only after this returns.
   if (pursuit_.joinable()) pursuit_.join();
+  tissue::Run run;
+  run.cancelled = std::make_shared<std::atomic<bool>>(false);
+  {
+    const std::lock_guard<std::mutex> lock(goal_mutex_);
+    goal_cancelled_ = run.cancelled;
+  }
   goal.setAccepted();
-  pursuit_ = std::thread([this, goal] {
-    pursue(goal);
-    pursuing_ = false;
-  });
-}
-
-void MesherNode::pursue(Goal goal) {
-  soft_tissue_sim::BuildMeshResult result;
-  build(*goal.getGoal(), result, [&](const tissue::Progress& progress) {
+  run.report = [goal](const tissue::Progress& progress) mutable {
     soft_tissue_sim::BuildMeshFeedback feedback;
     feedback.stage = progress.stage;
     feedback.fraction = progress.fraction;
     feedback.tetrahedra = progress.tetrahedra;
     goal.publishFeedback(feedback);
+  };
+  pursuit_ = std::thread([this, goal, run] {
+    pursue(goal, run);
+    pursuing_ = false;
   });
+}
+
+void MesherNode::pursue(Goal goal, const tissue::Run& run) {
+  soft_tissue_sim::BuildMeshResult result;
+  build(*goal.getGoal(), result, run);
   const std::string& sentence = result.result.message;
   switch (static_cast<ErrorCode>(result.result.code)) {
     case ErrorCode::kOk: goal.setSucceeded(result, sentence); break;
@@ -130,7 +141,9 @@ void MesherNode::pursue(Goal goal) {
 void MesherNode::cancel(Goal goal) {
   const actionlib_msgs::GoalStatus status = goal.getGoalStatus();
   // The one goal that is being pursued; others have been answered already.
-  if (status.status == actionlib_msgs::GoalStatus::PREEMPTING) *cancelled_ = true;
+  if (status.status != actionlib_msgs::GoalStatus::PREEMPTING) return;
+  const std::lock_guard<std::mutex> lock(goal_mutex_);
+  *goal_cancelled_ = true;
 }
 
 void MesherNode::build_if_wanted() {
@@ -141,22 +154,19 @@ void MesherNode::build_if_wanted() {
     if (!lock.owns_lock() || !build_wanted_.exchange(false)) return;
   }
   Response unused;
-  const Outcome outcome = guarded([&] { build(request_from_parameters(), unused, nullptr); });
+  tissue::Run run;
+  run.cancelled = node_ending_;
+  const Outcome outcome = guarded([&] { build(request_from_parameters(), unused, run); });
   if (!outcome.ok()) report("build on volume", outcome);
   // Somebody was faster: the wish stands.
   if (unused.result.code == soft_tissue_sim::Result::E_BUSY) build_wanted_ = true;
 }
 
 template <class Asked, class Answer>
-void MesherNode::build(const Asked& request, Answer& answer,
-                       const std::function<void(const tissue::Progress&)>& report_progress) {
+void MesherNode::build(const Asked& request, Answer& answer, const tissue::Run& run) {
   const Outcome outcome = guarded([&] {
     const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
     if (!lock.owns_lock()) throw InputError(ErrorCode::kBusy, "build_mesh: a build is running");
-    *cancelled_ = ending_.load();
-    tissue::Run run;
-    run.report = report_progress;
-    run.cancelled = cancelled_;
     const auto mesh = std::make_shared<const tissue::TetMesh>(mesh_for(request, run));
     run.go_on();
     publish(mesh);
@@ -273,6 +283,7 @@ MesherNode::Request MesherNode::request_from_parameters() const {
 }
 
 void MesherNode::publish(const MeshPtr& built) {
+  const std::lock_guard<std::mutex> one_at_a_time(publish_mutex_);
   const tissue::TetMesh& mesh = *built;
   auto message = boost::make_shared<soft_tissue_sim::TetMesh>(to_message(mesh));
   if (ros::serialization::serializationLength(*message) > kMaxMessageBytes) {

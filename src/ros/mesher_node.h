@@ -13,7 +13,6 @@
 #include <soft_tissue_sim/Volume.h>
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -46,7 +45,7 @@ class MesherNode {
   void take_volume(const soft_tissue_sim::Volume& message, const char* name, VolumePtr& slot);
   bool serve(Request& request, Response& response);
   void take_goal(Goal goal);
-  void pursue(Goal goal);
+  void pursue(Goal goal, const tissue::Run& run);
   void cancel(Goal goal);
   bool save(FileRequest& request, FileResponse& response);
   bool load(FileRequest& request, FileResponse& response);
@@ -54,8 +53,7 @@ class MesherNode {
   /// Builds and publishes, unless a build is running: then E_BUSY. `Answer` is the response of the
   /// service or the result of the action, which have the same fields, as their requests have.
   template <class Asked, class Answer>
-  void build(const Asked& request, Answer& answer,
-             const std::function<void(const tissue::Progress&)>& report);
+  void build(const Asked& request, Answer& answer, const tissue::Run& run);
   template <class Asked>
   tissue::TetMesh mesh_for(const Asked& request, const tissue::Run& run) const;
   Request request_from_parameters() const;
@@ -69,8 +67,13 @@ class MesherNode {
   VolumePtr volume_, mask_;
   MeshPtr mesh_;
   std::mutex build_mutex_;
-  // What the running build looks at; set to end it.
-  std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  std::mutex publish_mutex_;
+  // What a build looks at, and stops when it is set: that of the goal last taken, and of all
+  // others.
+  using Token = std::shared_ptr<std::atomic<bool>>;
+  std::mutex goal_mutex_;
+  Token goal_cancelled_ = std::make_shared<std::atomic<bool>>(false);
+  const Token node_ending_ = std::make_shared<std::atomic<bool>>(false);
   std::atomic<std::uint64_t> rejected_{0}, built_{0};
 
   // Requests are served from a queue of their own, by two threads: one that builds and one that can

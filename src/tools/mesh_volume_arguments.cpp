@@ -191,7 +191,7 @@ MeshVolumeArguments mesh_volume_arguments(const po::variables_map& given) {
   mesh.levels.smooth_levels = whole("smooth-levels", 0, 100);
   mesh.keep_interfaces = given.count("keep-interfaces") != 0;
   mesh.project_boundary = given.count("no-projection") == 0;
-  mesh.projection.sweeps = whole("sweeps", 0, 100);
+  mesh.projection.sweeps = whole("sweeps", 1, 100);
   mesh.projection.sweeps_after_following = whole("following-sweeps", 0, 100);
   mesh.threads = whole("threads", 0, 1024);
   if (given.count("window") != 0) {

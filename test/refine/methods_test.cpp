@@ -240,6 +240,11 @@ TEST(Methods, M3_TotalsThatCannotBeAreRefused) {
   options.target_tetrahedra = 1000;
   EXPECT_EQ(refusal([&] { build_mesh(organ, nullptr, options); }).substr(0, 33),
             "E_PARAM: target_tetrahedra: 1000 ");
+  options.target_tetrahedra = 0;
+  options.projection.sweeps = 0;
+  EXPECT_EQ(refusal([&] { build_mesh(organ, nullptr, options); }).substr(0, 32),
+            "E_PARAM: projection: 0 and 2 swe");
+  options.projection.sweeps = 4;
   options.spacing = 0.0;
   options.target_tetrahedra = 5;
   EXPECT_EQ(refusal([&] { build_mesh(organ, nullptr, options); }).substr(0, 32),

@@ -43,24 +43,17 @@ class TrilinearSampler {
 
   /// `place` is in the grid's frame [m].
   double operator()(const Vec3& place) const {
-    double fraction[3];
-    int cell[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double index = std::clamp(place[axis] * inverse_spacing_[axis], 0.0, last_[axis]);
-      cell[axis] = std::min(static_cast<int>(index), last_cell_[axis]);
-      fraction[axis] = index - cell[axis];
-    }
-    const T* corner = data_ + cell[0] + cell[1] * row_ + cell[2] * slice_;
+    const Location at = locate(place);
     const auto along_x = [&](const T* p) {
       const double low = static_cast<double>(p[0]);
-      return low + fraction[0] * (static_cast<double>(p[step_[0]]) - low);
+      return low + at.fraction[0] * (static_cast<double>(p[step_[0]]) - low);
     };
     const auto along_y = [&](const T* p) {
       const double low = along_x(p);
-      return low + fraction[1] * (along_x(p + step_[1]) - low);
+      return low + at.fraction[1] * (along_x(p + step_[1]) - low);
     };
-    const double low = along_y(corner);
-    return slope_ * (low + fraction[2] * (along_y(corner + step_[2]) - low)) + intercept_;
+    const double low = along_y(at.corner);
+    return slope_ * (low + at.fraction[2] * (along_y(at.corner + step_[2]) - low)) + intercept_;
   }
 
   struct ValueAndGradient {
@@ -69,21 +62,14 @@ class TrilinearSampler {
     Vec3 gradient;
   };
   ValueAndGradient with_gradient(const Vec3& place) const {
-    double fraction[3];
-    int cell[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double index = std::clamp(place[axis] * inverse_spacing_[axis], 0.0, last_[axis]);
-      cell[axis] = std::min(static_cast<int>(index), last_cell_[axis]);
-      fraction[axis] = index - cell[axis];
-    }
-    const T* p = data_ + cell[0] + cell[1] * row_ + cell[2] * slice_;
+    const Location at = locate(place);
     double corner[8];
     for (int i = 0; i < 8; ++i) {
       corner[i] = static_cast<double>(
-          p[(i & 1) * step_[0] + (i >> 1 & 1) * step_[1] + (i >> 2) * step_[2]]);
+          at.corner[(i & 1) * step_[0] + (i >> 1 & 1) * step_[1] + (i >> 2) * step_[2]]);
     }
     // Blends away one axis after the other; what differs along it is the gradient.
-    const double u = fraction[0], v = fraction[1], w = fraction[2];
+    const double u = at.fraction[0], v = at.fraction[1], w = at.fraction[2];
     double along_x[4], dx[4];
     for (int i = 0; i < 4; ++i) {
       dx[i] = corner[2 * i + 1] - corner[2 * i];
@@ -153,6 +139,23 @@ class TrilinearSampler {
   }
 
  private:
+  // The low corner of the cell that holds a place, and where in the cell it is, from 0 to 1.
+  struct Location {
+    const T* corner;
+    double fraction[3];
+  };
+  Location locate(const Vec3& place) const {
+    Location at = {data_, {}};
+    const std::ptrdiff_t strides[3] = {1, row_, slice_};
+    for (int axis = 0; axis < 3; ++axis) {
+      const double index = std::clamp(place[axis] * inverse_spacing_[axis], 0.0, last_[axis]);
+      const int cell = std::min(static_cast<int>(index), last_cell_[axis]);
+      at.fraction[axis] = index - cell;
+      at.corner += cell * strides[axis];
+    }
+    return at;
+  }
+
   const T* data_;
   double slope_, intercept_;
   double inverse_spacing_[3], last_[3];

@@ -10,7 +10,7 @@ namespace tissue {
 
 struct ProjectionOptions {
   /// Rounds in which every boundary vertex moves as far towards the surface as the angles around it
-  /// allow.
+  /// allow; at least 1.
   int sweeps = 4;
   /// Where vertices are held back: inner vertices follow the boundary, and this many sweeps more.
   /// 0: they stay.

@@ -160,7 +160,6 @@ class Cutter {
       }
     });
     const std::vector<std::size_t> first = starts(counts);
-    result_.vertex_count = static_cast<std::uint32_t>(first.back());
     result_.vertices.resize(first.back());
     result_.on_surface.assign(first.back(), 1);
     for_each_layer([&](std::int64_t layer, std::int64_t begin, std::int64_t end) {

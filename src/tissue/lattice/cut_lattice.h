@@ -31,7 +31,6 @@ struct CutLattice {
   static constexpr std::uint8_t kVertexMark = 0x80;
   /// Number of the first vertex at or after each point.
   std::vector<std::uint32_t> first_vertex;
-  std::uint32_t vertex_count = 0;
   /// Places of the vertices in the grid's frame [m].
   std::vector<Vec3> vertices;
   /// 1 for vertices on the surface.

@@ -4,9 +4,11 @@
 #include "filler.h"
 #include "lattice_search.h"
 #include "mesh_design.h"
+#include "mesh_measures.h"
 #include "tissue/base/error.h"
 #include "tissue/base/parallel.h"
 #include "tissue/field/density_sampling.h"
+#include "tissue/field/label_densities.h"
 #include "tissue/field/surface_distance.h"
 
 #include <algorithm>
@@ -18,35 +20,6 @@ namespace {
 
 // Angles of the lattice's own tets, 60 and 90 degrees, as cos·|cos|.
 constexpr DihedralRange kWholeAngles = {0.0, 0.25};
-
-// A volume of labels in which each stands for its density.
-Volume relabelled(const Volume& volume, const std::map<std::int64_t, double>& densities) {
-  Volume result;
-  result.grid = volume.grid;
-  result.quantity = Quantity::kLabel;
-  result.frame_id = volume.frame_id;
-  std::vector<float> values;
-  values.reserve(volume.grid.voxel_count());
-  std::visit(
-      [&](const auto& labels) {
-        auto last = densities.end();
-        for (const auto raw : labels) {
-          const double value = volume.slope * static_cast<double>(raw) + volume.intercept;
-          const auto label = static_cast<std::int64_t>(std::llround(value));
-          if (last == densities.end() || last->first != label) last = densities.find(label);
-          // Background has no tissue; whatever the surface does there, a density is positive.
-          const bool missing = last == densities.end();
-          if (missing && label != 0) {
-            throw InputError(ErrorCode::kParam, "label_densities: label " + std::to_string(label) +
-                                                    " of the volume is not in the table");
-          }
-          values.push_back(missing ? 1.0f : static_cast<float>(last->second));
-        }
-      },
-      volume.voxels);
-  result.voxels = std::move(values);
-  return result;
-}
 
 DensityWindow window_for(const Volume& volume, const ImplicitSurface& surface,
                          const MeshOptions& options) {
@@ -100,40 +73,11 @@ StuffingOptions lattice_for(const Organ& organ, const MeshOptions& options,
     StageClock unused;
     Run quiet = run;
     quiet.report = nullptr;
-    return static_cast<double>(design_mesh(organ, at, options, library, unused, quiet).tetrahedra);
+    // A guess may lie beyond a limit that the mesh to be found keeps; nothing is allocated for it.
+    MeshOptions roomy = options;
+    roomy.max_tetrahedra *= 2;
+    return static_cast<double>(design_mesh(organ, at, roomy, library, unused, quiet).tetrahedra);
   });
-}
-
-// By the divergence theorem: tets from one vertex to every boundary triangle.
-double volume_inside(const TetMesh& mesh) {
-  double sum = 0.0;
-  for (const Triangle& triangle : mesh.surface) {
-    sum += determinant(mesh.vertices[0], mesh.vertices[triangle[0]], mesh.vertices[triangle[1]],
-                       mesh.vertices[triangle[2]]);
-  }
-  return sum / 6.0;
-}
-
-// Angles of the tets for which `known` says no.
-template <class Known>
-DihedralRange measured_angles(const TetMesh& mesh, const Run& run, const Known& known) {
-  constexpr std::size_t kPiece = 16384;
-  std::vector<DihedralRange> ranges((mesh.tets.size() + kPiece - 1) / kPiece);
-  parallel_ranges(ranges.size(), 1, run, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t piece = begin; piece < end; ++piece) {
-      const std::size_t last = std::min((piece + 1) * kPiece, mesh.tets.size());
-      for (std::size_t t = piece * kPiece; t < last; ++t) {
-        if (known(t)) continue;
-        const auto corner = [&](int i) -> Vec3 {
-          return mesh.vertices[mesh.tets[t][i]].cast<double>();
-        };
-        ranges[piece].include(dihedral_range(corner(0), corner(1), corner(2), corner(3)));
-      }
-    }
-  });
-  DihedralRange range;
-  for (const DihedralRange& part : ranges) range.include(part);
-  return range;
 }
 
 std::vector<std::uint64_t> level_counts(const std::vector<std::uint8_t>& levels) {

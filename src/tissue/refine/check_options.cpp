@@ -8,7 +8,8 @@
 namespace tissue {
 namespace {
 
-// What a run holds at its peak, rounded up; benchmarks print the figure.
+// More than any method holds at its peak, which benchmarks print, with room for what an allocator
+// keeps to itself.
 constexpr double kBytesPerTet = 44.0;
 
 // A mesh needs at least the tets around one lattice point.
@@ -66,12 +67,12 @@ void check_options(const MeshOptions& options) {
            "initial_tetrahedra: " + std::to_string(options.initial_tetrahedra) +
                " is over the limit of " + std::to_string(options.max_tetrahedra));
   }
-  if (options.projection.sweeps < 0 || options.projection.sweeps > 100 ||
+  if (options.projection.sweeps < 1 || options.projection.sweeps > 100 ||
       options.projection.sweeps_after_following < 0 ||
       options.projection.sweeps_after_following > 100) {
     refuse(ErrorCode::kParam, "projection: " + std::to_string(options.projection.sweeps) + " and " +
                                   std::to_string(options.projection.sweeps_after_following) +
-                                  " sweeps are not within 0 to 100");
+                                  " sweeps are not within 1 to 100 and 0 to 100");
   }
   if (!options.component.place.allFinite()) {
     refuse(ErrorCode::kParam, "component: its place is not finite");
