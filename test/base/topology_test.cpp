@@ -1,8 +1,11 @@
 #include "tissue/base/topology.h"
 
 #include "tissue/base/quality.h"
+#include "tissue/base/tet_shape.h"
 
 #include <gtest/gtest.h>
+
+#include <random>
 
 #include <cmath>
 
@@ -42,6 +45,29 @@ TEST(DihedralRange, GivesAFlatTetBothExtremes) {
   const DihedralRange flat = dihedral_range({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0});
   EXPECT_EQ(flat.min_angle(), 0.0);
   EXPECT_NEAR(flat.max_angle(), M_PI, 1e-12);
+}
+
+TEST(TetBatch, MeasuresAnglesAsOneByOneInDoublePrecision) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> uniform(-0.002, 0.002);
+  TetBatch batch(0.003);
+  std::vector<DihedralRange> expected;
+  for (int i = 0; i < TetBatch::kCapacity - 1; ++i) {
+    std::array<Vec3, 4> corners;
+    for (Vec3& corner : corners)
+      corner = {uniform(generator), uniform(generator), uniform(generator)};
+    batch.add(corners[0], corners[1], corners[2], corners[3]);
+    expected.push_back(dihedral_range(corners[0], corners[1], corners[2], corners[3]));
+  }
+  const Vec3 place(0.001, 0.001, 0.001);
+  batch.add(place, place, place, place);
+  expected.push_back({-1.0, 1.0});
+  std::array<float, TetBatch::kCapacity> lowest, highest;
+  batch.measure(lowest.data(), highest.data());
+  for (int i = 0; i < batch.count(); ++i) {
+    EXPECT_NEAR(lowest[i], expected[i].lowest, 1e-4) << i;
+    EXPECT_NEAR(highest[i], expected[i].highest, 1e-4) << i;
+  }
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct DihedralRange {
   }
 };
 
-/// The six dihedral angles of a tet of positive volume. A flat tet gives 0 and 180 degrees.
+/// The six dihedral angles of a tet, whichever way it is turned. A flat one gives 0 and 180 degrees.
 DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 /// Bounds on dihedral angles, as cos·|cos|.

@@ -3,6 +3,7 @@
 #include "tissue/field/volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <utility>
 
@@ -91,30 +92,53 @@ class TrilinearSampler {
   /// What interpolation of these voxels in bulk is done in: floats hold every 16-bit value.
   using Real = std::conditional_t<sizeof(T) <= 2 || std::is_same_v<T, float>, float, double>;
 
-  /// The values at all places of a batch, several times faster than one by one, with places good to
-  /// a ten-thousandth of a voxel.
-  void operator()(const PlaceBatch& places, float* values) const {
+  /// The cells that hold the places of a batch: the low corner of each, and where in it the place
+  /// is, from 0 to 1.
+  struct Cells {
+    int count = 0;
+    std::array<const T*, PlaceBatch::kCapacity> corner;
+    alignas(64) std::array<std::array<float, PlaceBatch::kCapacity>, 3> fraction;
+  };
+
+  /// Finds the cells, good to a ten-thousandth of a voxel, and asks for their voxels, so that they
+  /// come from memory while another batch is interpolated.
+  void locate(const PlaceBatch& places, Cells& cells) const {
     constexpr int kCapacity = PlaceBatch::kCapacity;
-    alignas(64) float fraction[3][kCapacity];
     alignas(64) int cell[3][kCapacity];
     const float* coordinates[3] = {places.x, places.y, places.z};
     for (int axis = 0; axis < 3; ++axis) {
       const auto scale = static_cast<float>(inverse_spacing_[axis]);
       const auto last = static_cast<float>(last_[axis]);
       const int last_cell = last_cell_[axis];
+      float* __restrict__ fraction = cells.fraction[axis].data();
       for (int i = 0; i < kCapacity; ++i) {
         const float index = std::min(std::max(coordinates[axis][i] * scale, 0.0f), last);
         cell[axis][i] = std::min(static_cast<int>(index), last_cell);
-        fraction[axis][i] = index - static_cast<float>(cell[axis][i]);
+        fraction[i] = index - static_cast<float>(cell[axis][i]);
       }
     }
+    cells.count = places.count;
+    for (int i = 0; i < places.count; ++i) {
+      const T* corner = data_ + cell[0][i] + cell[1][i] * row_ + cell[2][i] * slice_;
+      cells.corner[i] = corner;
+      // Two neighbours along x share a line of the cache, mostly.
+      __builtin_prefetch(corner);
+      __builtin_prefetch(corner + step_[1]);
+      __builtin_prefetch(corner + step_[2]);
+      __builtin_prefetch(corner + step_[1] + step_[2]);
+    }
+  }
+
+  /// The values at all places of a batch, several times faster than one by one.
+  void interpolate(const Cells& cells, float* values) const {
+    constexpr int kCapacity = PlaceBatch::kCapacity;
     // Gathered in the type in which they are stored, two at a time; converting them vectorises.
     struct Pair {
       T low, high;
     };
     alignas(64) Pair corner[4][kCapacity] = {};
-    for (int i = 0; i < places.count; ++i) {
-      const T* p = data_ + cell[0][i] + cell[1][i] * row_ + cell[2][i] * slice_;
+    for (int i = 0; i < cells.count; ++i) {
+      const T* p = cells.corner[i];
       const T* edges[4] = {p, p + step_[1], p + step_[2], p + step_[1] + step_[2]};
       for (int k = 0; k < 4; ++k) {
         if (step_[0] == 1) {
@@ -129,12 +153,12 @@ class TrilinearSampler {
     };
     const auto slope = static_cast<Real>(slope_), intercept = static_cast<Real>(intercept_);
     for (int i = 0; i < kCapacity; ++i) {
-      const float u = fraction[0][i], v = fraction[1][i];
+      const float u = cells.fraction[0][i], v = cells.fraction[1][i];
       const auto along_x = [&](int k) {
         return blend(static_cast<Real>(corner[k][i].low), static_cast<Real>(corner[k][i].high), u);
       };
       const Real low = blend(along_x(0), along_x(1), v), high = blend(along_x(2), along_x(3), v);
-      values[i] = static_cast<float>(slope * blend(low, high, fraction[2][i]) + intercept);
+      values[i] = static_cast<float>(slope * blend(low, high, cells.fraction[2][i]) + intercept);
     }
   }
 
@@ -192,8 +216,10 @@ class NearestSampler {
   /// A step function has no slope.
   ValueAndGradient with_gradient(const Vec3& place) const { return {(*this)(place), Vec3::Zero()}; }
 
+  using Cells = PlaceBatch;
+  void locate(const PlaceBatch& places, Cells& cells) const { cells = places; }
   /// The values at all places of a batch.
-  void operator()(const PlaceBatch& places, float* values) const {
+  void interpolate(const Cells& places, float* values) const {
     for (int i = 0; i < places.count; ++i) {
       const Eigen::Vector3f place(places.x[i], places.y[i], places.z[i]);
       values[i] = static_cast<float>((*this)(Vec3(place.cast<double>())));

@@ -1,47 +1,26 @@
 #include "tissue/base/quality.h"
 
+#include "tissue/base/tet_shape.h"
+
 namespace tissue {
 
-namespace {
-
-// Normals of a tet's faces, their lengths twice the areas, and what angles between faces come from.
-struct Faces {
-  std::array<Vec3, 4> normals;
-  std::array<double, 4> squared_lengths;
-  double determinant;
-
-  Faces(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-    const Vec3 ab = b - a, ac = c - a, ad = d - a;
-    normals[1] = ad.cross(ac);
-    normals[2] = ab.cross(ad);
-    normals[3] = ac.cross(ab);
-    normals[0] = -(normals[1] + normals[2] + normals[3]);
-    for (int i = 0; i < 4; ++i) squared_lengths[i] = normals[i].squaredNorm();
-    determinant = -normals[3].dot(ad);
-  }
-  // cos·|cos| of the angle between faces i and j, times the squares of their lengths.
-  double signed_square(int i, int j) const {
-    const double cosine = -normals[i].dot(normals[j]);
-    return cosine * std::abs(cosine);
-  }
-};
-
-}  // namespace
-
 DihedralRange dihedral_range(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Faces faces(a, b, c, d);
-  std::array<double, 4> inverse;
-  for (int i = 0; i < 4; ++i) {
-    if (!(faces.squared_lengths[i] > 0.0)) return {-1.0, 1.0};
-    inverse[i] = 1.0 / faces.squared_lengths[i];
+  const Vec3 ab = b - a, ac = c - a, ad = d - a;
+  const TetShape<double> shape =
+      tet_shape(ab[0], ab[1], ab[2], ac[0], ac[1], ac[2], ad[0], ad[1], ad[2]);
+  if (shape.determinant == 0.0) return {-1.0, 1.0};
+  return {shape.lowest, shape.highest};
+}
+
+void TetBatch::measure(float* __restrict__ lowest, float* __restrict__ highest) const {
+  const int padded = (count_ + 7) / 8 * 8;
+  for (int i = 0; i < padded; ++i) {
+    const auto& e = edges_;
+    const TetShape<float> shape =
+        tet_shape(e[0][i], e[1][i], e[2][i], e[3][i], e[4][i], e[5][i], e[6][i], e[7][i], e[8][i]);
+    lowest[i] = shape.determinant != 0.0f ? shape.lowest : -1.0f;
+    highest[i] = shape.determinant != 0.0f ? shape.highest : 1.0f;
   }
-  DihedralRange range;
-  for (const auto& [i, j] : kTetEdges) {
-    const double square = faces.signed_square(i, j) * inverse[i] * inverse[j];
-    range.lowest = std::min(range.lowest, square);
-    range.highest = std::max(range.highest, square);
-  }
-  return range;
 }
 
 AngleBounds::AngleBounds(double min_deg, double max_deg) {

@@ -3,6 +3,7 @@
 #include "tissue/base/parallel.h"
 
 #include <cmath>
+#include <numeric>
 
 namespace tissue {
 namespace {
@@ -57,82 +58,140 @@ struct TetSampling {
   }
 };
 
-// Collects places, samples them batch by batch and adds each density, times its weight, to the
-// value it belongs to.
-template <class Sampler>
-class Accumulator {
- public:
-  Accumulator(const Sampler& sampler, const DensityWindow& window, std::vector<float>& sums)
-      : sampler_(sampler), window_(window), sums_(sums) {}
+// A vertex in one register; the last number is not looked at.
+struct Place {
+  float at __attribute__((vector_size(16)));
+};
 
-  void add(float x, float y, float z, std::size_t owner) {
-    const int i = places_.count++;
-    places_.x[i] = x;
-    places_.y[i] = y;
-    places_.z[i] = z;
-    end_share(owner, 1.0f);
+// One coordinate of `count` places in a tet, from that of its corners.
+inline void blend(const float* w0, const float* w1, const float* w2, const float* w3, float a,
+                  float b, float c, float d, int count, float* __restrict__ result) {
+  for (int i = 0; i < count; ++i) result[i] = w0[i] * a + w1[i] * b + w2[i] * c + w3[i] * d;
+}
+
+// Samples tets. They wait, apart by level, until their places fill a batch; a batch waits for its
+// voxels while the one before is worked on.
+template <class Sampler>
+class TetSampler {
+ public:
+  // Densities are added to what is there.
+  TetSampler(const Sampler& sampler, const DensityWindow& window,
+             const std::vector<TetSampling>& samplings, const std::vector<Place>& vertices,
+             const std::vector<Tet>& tets, std::vector<float>& densities)
+      : sampler_(sampler),
+        window_(window),
+        vertices_(vertices),
+        tets_(tets),
+        densities_(densities) {
+    for (const TetSampling& sampling : samplings) queues_.emplace_back(sampling);
   }
 
-  void add(const Vec3f& a, const Vec3f& b, const Vec3f& c, const Vec3f& d,
-           const TetSampling& sampling, std::size_t owner) {
-    if (sampling.parts == 1) {
-      const auto mean = [&](int axis) { return 0.25f * (a[axis] + b[axis] + c[axis] + d[axis]); };
-      return add(mean(0), mean(1), mean(2), owner);
-    }
-    const float weight = 1.0f / static_cast<float>(sampling.parts);
-    // A tet begins a batch or fits into one, so that its sum does not depend on those before it.
-    if (sampling.parts > PlaceBatch::kCapacity - places_.count) flush();
-    for (int part = 0; part < sampling.parts;) {
-      const int first = places_.count;
-      const int count = std::min(PlaceBatch::kCapacity - first, sampling.parts - part);
-      const float* w[4];
-      for (int corner = 0; corner < 4; ++corner) w[corner] = &sampling.weights[corner][part];
-      blend(w, a.x(), b.x(), c.x(), d.x(), count, places_.x + first);
-      blend(w, a.y(), b.y(), c.y(), d.y(), count, places_.y + first);
-      blend(w, a.z(), b.z(), c.z(), d.z(), count, places_.z + first);
-      places_.count += count;
-      part += count;
-      end_share(owner, weight);
+  // Tets in a row, all of one level.
+  void add(std::size_t begin, std::size_t end, std::uint8_t level) {
+    Queue& queue = queues_[level];
+    while (begin < end) {
+      const int count =
+          static_cast<int>(std::min<std::size_t>(end - begin, queue.capacity - queue.count));
+      std::iota(&queue.tets[queue.count], &queue.tets[queue.count] + count,
+                static_cast<std::uint32_t>(begin));
+      queue.count += count;
+      begin += count;
+      if (queue.count == queue.capacity) sample(queue);
     }
   }
 
   void flush() {
-    float values[PlaceBatch::kCapacity];
-    sampler_(places_, values);
-    window_.apply(values, PlaceBatch::kCapacity);
-    int i = 0;
-    for (int share = 0; share < share_count_; ++share) {
-      float sum = 0.0f;
-      for (; i < shares_[share].end; ++i) sum += values[i];
-      sums_[shares_[share].owner] += shares_[share].weight * sum;
-    }
-    places_.count = share_count_ = 0;
+    for (Queue& queue : queues_) sample(queue);
+    finish(waiting_);
   }
 
  private:
-  static void blend(const float* const w[4], float a, float b, float c, float d, int count,
-                    float* __restrict__ result) {
-    const float *w0 = w[0], *w1 = w[1], *w2 = w[2], *w3 = w[3];
-    for (int i = 0; i < count; ++i) result[i] = w0[i] * a + w1[i] * b + w2[i] * c + w3[i] * d;
+  static constexpr int kCapacity = PlaceBatch::kCapacity;
+  struct Queue {
+    explicit Queue(const TetSampling& places)
+        : sampling(&places), capacity(std::max(1, kCapacity / places.parts)) {}
+    const TetSampling* sampling;
+    int capacity, count = 0;
+    std::array<std::uint32_t, kCapacity> tets;
+  };
+  // A batch on its way: so many places for each of these tets.
+  struct Batch {
+    int tet_count = 0, parts = 0;
+    float weight = 0.0f;
+    std::array<std::uint32_t, kCapacity> tets;
+    typename Sampler::Cells cells;
+  };
+
+  // The number of places is known to the compiler where it is small and common.
+  void sample(Queue& queue) {
+    switch (queue.sampling->parts) {
+      case 1: start<1>(queue, 1); break;
+      case 4: start<4>(queue, 4); break;
+      default: start<0>(queue, queue.sampling->parts);
+    }
+    queue.count = 0;
   }
 
-  // Places that follow each other and belong to one value.
-  struct Share {
-    int end;
-    float weight;
-    std::size_t owner;
-  };
-  void end_share(std::size_t owner, float weight) {
-    shares_[share_count_++] = {places_.count, weight, owner};
-    if (places_.count == PlaceBatch::kCapacity) flush();
+  template <int kParts>
+  void start(const Queue& queue, int all_parts) {
+    for (int first = 0; first < all_parts; first += kCapacity) {
+      Batch& batch = batches_[next_];
+      batch.parts = kParts > 0 ? kParts : std::min(kCapacity, all_parts - first);
+      batch.weight = 1.0f / static_cast<float>(all_parts);
+      batch.tet_count = queue.count;
+      std::copy_n(queue.tets.begin(), queue.count, batch.tets.begin());
+      for (int i = 0; i < queue.count; ++i) {
+        place<kParts>(tets_[queue.tets[i]], *queue.sampling, first, batch.parts, i * batch.parts);
+      }
+      places_.count = queue.count * batch.parts;
+      sampler_.locate(places_, batch.cells);
+      finish(waiting_);
+      waiting_ = &batch;
+      next_ = 1 - next_;
+    }
+  }
+
+  void finish(Batch* batch) {
+    if (batch == nullptr) return;
+    std::array<float, kCapacity> values;
+    sampler_.interpolate(batch->cells, values.data());
+    window_.apply(values.data(), kCapacity);
+    for (int i = 0; i < batch->tet_count; ++i) {
+      float sum = 0.0f;
+      for (int part = 0; part < batch->parts; ++part) sum += values[i * batch->parts + part];
+      densities_[batch->tets[i]] += batch->weight * sum;
+    }
+    waiting_ = nullptr;
+  }
+
+  // `count` places of a tet, from number `first` on, to where `at` says.
+  template <int kParts>
+  void place(const Tet& tet, const TetSampling& sampling, int first, int count, int at) {
+    const Place &a = vertices_[tet[0]], &b = vertices_[tet[1]], &c = vertices_[tet[2]],
+                &d = vertices_[tet[3]];
+    float* const rows[3] = {places_.x + at, places_.y + at, places_.z + at};
+    if (kParts == 1) {
+      const auto mean = 0.25f * ((a.at + b.at) + (c.at + d.at));
+      for (int axis = 0; axis < 3; ++axis) *rows[axis] = mean[axis];
+      return;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      blend(&sampling.weights[0][first], &sampling.weights[1][first], &sampling.weights[2][first],
+            &sampling.weights[3][first], a.at[axis], b.at[axis], c.at[axis], d.at[axis],
+            kParts > 0 ? kParts : count, rows[axis]);
+    }
   }
 
   const Sampler& sampler_;
   const DensityWindow& window_;
-  std::vector<float>& sums_;
+  const std::vector<Place>& vertices_;
+  const std::vector<Tet>& tets_;
+  std::vector<float>& densities_;
+  std::vector<Queue> queues_;
   PlaceBatch places_;
-  int share_count_ = 0;
-  Share shares_[PlaceBatch::kCapacity];
+  std::array<Batch, 2> batches_;
+  Batch* waiting_ = nullptr;
+  int next_ = 0;
 };
 
 }  // namespace
@@ -143,11 +202,23 @@ std::vector<float> sample_densities(const Volume& volume, const DensityWindow& w
   densities.resize(places.size(), 0.0f);
   with_sampler(volume, [&](const auto& sampler) {
     parallel_ranges(places.size() - begin, 1024, run, [&](std::size_t from, std::size_t to) {
-      Accumulator accumulator(sampler, window, densities);
-      for (std::size_t i = begin + from; i < begin + to; ++i) {
-        accumulator.add(places[i].x(), places[i].y(), places[i].z(), i);
+      PlaceBatch batch;
+      float values[PlaceBatch::kCapacity];
+      typename std::decay_t<decltype(sampler)>::Cells cells;
+      for (std::size_t i = begin + from; i < begin + to; i += batch.count) {
+        batch.count =
+            static_cast<int>(std::min<std::size_t>(PlaceBatch::kCapacity, begin + to - i));
+        for (int k = 0; k < batch.count; ++k) {
+          const Vec3f& place = places[i + k];
+          batch.x[k] = place.x();
+          batch.y[k] = place.y();
+          batch.z[k] = place.z();
+        }
+        sampler.locate(batch, cells);
+        sampler.interpolate(cells, values);
+        window.apply(values, PlaceBatch::kCapacity);
+        std::copy(values, values + batch.count, &densities[i]);
       }
-      accumulator.flush();
     });
   });
   return densities;
@@ -163,17 +234,18 @@ std::vector<float> sample_tet_densities(const Volume& volume, const DensityWindo
   for (int level = 0; level <= finest; ++level) {
     samplings.emplace_back(std::ldexp(spacing, -level), volume.grid.spacing);
   }
+  std::vector<Place> padded;
+  padded.reserve(vertices.size());
+  for (const Vec3f& v : vertices) padded.push_back(Place{{v[0], v[1], v[2], 0.0f}});
   std::vector<float> densities(tets.size(), 0.0f);
   with_sampler(volume, [&](const auto& sampler) {
-    parallel_ranges(tets.size(), 1024, run, [&](std::size_t begin, std::size_t end) {
-      Accumulator accumulator(sampler, window, densities);
-      for (std::size_t t = begin; t < end; ++t) {
-        const TetSampling& sampling = samplings[levels[t]];
-        const Vec3f &a = vertices[tets[t][0]], &b = vertices[tets[t][1]], &c = vertices[tets[t][2]],
-                    &d = vertices[tets[t][3]];
-        accumulator.add(a, b, c, d, sampling, t);
+    parallel_ranges(tets.size(), 8192, run, [&](std::size_t begin, std::size_t end) {
+      TetSampler tet_sampler(sampler, window, samplings, padded, tets, densities);
+      for (std::size_t t = begin, next = begin; t < end; t = next) {
+        while (next < end && levels[next] == levels[t]) ++next;
+        tet_sampler.add(t, next, levels[t]);
       }
-      accumulator.flush();
+      tet_sampler.flush();
     });
   });
   return densities;

@@ -96,9 +96,10 @@ int lattice_direction(const Barycentric& a, const Barycentric& b) {
 // A total order of the six lattice edges that agrees with every comparison in the key.
 std::array<int, 6> edge_ranks(const TemplateKey& key) {
   std::array<unsigned, 6> before{};
+  const unsigned deciding = key.deciding_corners();
   for (int face = 0; face < 4; ++face) {
     for (int corner = 0; corner < 3; ++corner) {
-      if (!key.face_decides(face, corner)) continue;
+      if ((deciding >> (3 * face + corner) & 1u) == 0) continue;
       const int z = kTetFaces[face][corner];
       const int lower = tet_edge(z, kTetFaces[face][corner == 0 ? 1 : 0]);
       const int upper = tet_edge(z, kTetFaces[face][corner == 2 ? 1 : 2]);
@@ -138,21 +139,40 @@ SplitPattern pattern_of(const TemplateKey& key, const std::array<int, 6>& ranks,
   return pattern;
 }
 
+// Whether both edges of a face at one of its corners are among these.
+bool both_finer(unsigned finer_edges, int face, int corner) {
+  const int z = kTetFaces[face][corner];
+  for (const int other : kTetFaces[face]) {
+    if (other != z && (finer_edges >> tet_edge(z, other) & 1u) == 0) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-bool TemplateKey::face_decides(int face, int corner) const {
-  if ((finer_faces >> face & 1u) != 0) return false;
-  const int z = kTetFaces[face][corner];
-  int finer = 0;
-  bool both_at_corner = true;
-  for (int other = 0; other < 3; ++other) {
-    const int a = kTetFaces[face][other], b = kTetFaces[face][(other + 1) % 3];
-    const bool is_finer = (finer_edges >> tet_edge(a, b) & 1u) != 0;
-    finer += is_finer;
-    if (a == z || b == z) both_at_corner = both_at_corner && is_finer;
+unsigned TemplateKey::deciding_corners() const {
+  // By whether the level is above 0, and the finer edges.
+  static const auto table = [] {
+    std::array<std::array<unsigned, 64>, 2> result{};
+    for (unsigned edges = 0; edges < 64; ++edges) {
+      for (int face = 0; face < 4; ++face) {
+        for (int corner = 0; corner < 3; ++corner) {
+          if (!both_finer(edges, face, corner)) continue;
+          const unsigned bit = 1u << (3 * face + corner);
+          result[1][edges] |= bit;
+          // At level 0 a face with three halved edges is split into four triangles without a
+          // diagonal.
+          if (!both_finer(edges, face, (corner + 1) % 3)) result[0][edges] |= bit;
+        }
+      }
+    }
+    return result;
+  }();
+  unsigned corners = table[level > 0][finer_edges];
+  for (int face = 0; face < 4; ++face) {
+    if ((finer_faces >> face & 1u) != 0) corners &= ~(7u << 3 * face);
   }
-  // At level 0 a face with three halved edges is split into four triangles without a diagonal.
-  return both_at_corner && (level > 0 || finer == 2);
+  return corners;
 }
 
 Blueprint make_blueprint(const TemplateKey& key, Splittings& splittings) {

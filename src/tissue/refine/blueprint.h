@@ -27,7 +27,8 @@ struct TemplateKey {
     return static_cast<std::uint32_t>(level) << 22 | finer_edges << 16 | finer_faces << 12 |
            first_edges;
   }
-  bool face_decides(int face, int corner) const;
+  /// Bit 3f + c: whether that comparison decides a diagonal.
+  unsigned deciding_corners() const;
 };
 
 /// The 8^level parts of a lattice tet and the ways to close each of them.

@@ -189,7 +189,7 @@ class Builder {
                   known.begin() + static_cast<std::ptrdiff_t>(first_tet_[t + 1]), whole_[t]);
       }
     }
-    DihedralRange range = measured_angles(mesh_, run_, [&](std::size_t t) {
+    DihedralRange range = measured_angles(mesh_, spacing_, run_, [&](std::size_t t) {
       if (known[t] == 0 || moved.empty()) return known[t] != 0;
       const Tet& tet = mesh_.tets[t];
       return (moved[tet[0]] | moved[tet[1]] | moved[tet[2]] | moved[tet[3]]) == 0;

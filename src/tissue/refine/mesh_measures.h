@@ -3,8 +3,10 @@
 #include "tissue/base/parallel.h"
 #include "tissue/base/quality.h"
 #include "tissue/base/tet_mesh.h"
+#include "tissue/base/tet_shape.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 namespace tissue {
@@ -20,21 +22,30 @@ inline double volume_inside(const TetMesh& mesh) {
   return sum / 6.0;
 }
 
-/// Angles of the tets for which `known` says no.
+/// Angles of the tets for which `known` says no; `unit` is about the length of an edge [m].
 template <class Known>
-DihedralRange measured_angles(const TetMesh& mesh, const Run& run, const Known& known) {
+DihedralRange measured_angles(const TetMesh& mesh, double unit, const Run& run,
+                              const Known& known) {
   constexpr std::size_t kPiece = 16384;
   std::vector<DihedralRange> ranges((mesh.tets.size() + kPiece - 1) / kPiece);
   parallel_ranges(ranges.size(), 1, run, [&](std::size_t begin, std::size_t end) {
+    TetBatch batch(unit);
+    std::array<float, TetBatch::kCapacity> lowest, highest;
     for (std::size_t piece = begin; piece < end; ++piece) {
+      const auto measure = [&] {
+        batch.measure(lowest.data(), highest.data());
+        for (int i = 0; i < batch.count(); ++i) ranges[piece].include({lowest[i], highest[i]});
+        batch.clear();
+      };
       const std::size_t last = std::min((piece + 1) * kPiece, mesh.tets.size());
       for (std::size_t t = piece * kPiece; t < last; ++t) {
         if (known(t)) continue;
-        const auto corner = [&](int i) -> Vec3 {
-          return mesh.vertices[mesh.tets[t][i]].cast<double>();
-        };
-        ranges[piece].include(dihedral_range(corner(0), corner(1), corner(2), corner(3)));
+        const Tet& tet = mesh.tets[t];
+        batch.add(mesh.vertices[tet[0]], mesh.vertices[tet[1]], mesh.vertices[tet[2]],
+                  mesh.vertices[tet[3]]);
+        if (batch.count() == TetBatch::kCapacity) measure();
       }
+      measure();
     }
   });
   DihedralRange range;

@@ -60,9 +60,11 @@ TemplateKey key_of(const RefinableLattice& lattice, const RefinementPlan& plan,
   for (int f = 0; f < 4; ++f) {
     if (plan.face_levels[lattice.faces.tet_faces[t][f]] > key.level) key.finer_faces |= 1u << f;
   }
+  const unsigned deciding = key.deciding_corners();
+  if (deciding == 0) return key;
   for (int f = 0; f < 4; ++f) {
     for (int corner = 0; corner < 3; ++corner) {
-      if (!key.face_decides(f, corner)) continue;
+      if ((deciding >> (3 * f + corner) & 1u) == 0) continue;
       const int z = kTetFaces[f][corner];
       const int lower = tet_edge(z, kTetFaces[f][corner == 0 ? 1 : 0]);
       const int upper = tet_edge(z, kTetFaces[f][corner == 2 ? 1 : 2]);

@@ -48,19 +48,16 @@ class Projector {
 
   void sweep() {
     ++sweep_;
-    for (const auto& colour : rings_.colours) {
-      parallel_ranges(colour.size(), 128, run_, [&](std::size_t begin, std::size_t end) {
-        RingGuard guard(unit_);
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::uint32_t which = colour[i];
-          if (astray_[which] == 0) continue;
-          const Vec3f step = targets_[which] - vertices_[rings_.vertices[which]];
-          // Where no surface was found the target is where the vertex was.
-          if (step.isZero(0.0f) || !has_new_room(which)) continue;
-          astray_[which] = !move(rings_, which, step, kAtBoundary, guard);
-        }
-      });
-    }
+    rings_.for_each_block(run_, [&](std::uint32_t begin, std::uint32_t end) {
+      RingGuard guard(unit_);
+      for (std::uint32_t which = begin; which < end; ++which) {
+        if (astray_[which] == 0) continue;
+        const Vec3f step = targets_[which] - vertices_[rings_.vertices[which]];
+        // Where no surface was found the target is where the vertex was.
+        if (step.isZero(0.0f) || !has_new_room(which)) continue;
+        astray_[which] = !move(rings_, which, step, kAtBoundary, guard);
+      }
+    });
   }
 
   // Inner vertices next to boundary vertices that are held back take the mean displacement of their
@@ -75,26 +72,24 @@ class Projector {
       const Vec3f& end = astray_[i] != 0 ? targets_[i] : vertices_[rings_.vertices[i]];
       displacement[rings_.vertices[i]] = end - before_[i];
     }
-    for (const auto& colour : rings.colours) {
-      parallel_ranges(colour.size(), 128, run_, [&](std::size_t begin, std::size_t end) {
-        RingGuard guard(unit_);
-        for (std::size_t i = begin; i < end; ++i) {
-          const std::uint32_t which = colour[i], vertex = rings.vertices[which];
-          Vec3f sum = Vec3f::Zero();
-          int count = 0;
-          for (std::uint32_t k = rings.begin[which]; k < rings.begin[which + 1]; ++k) {
-            for (const std::uint32_t other : tets_[rings.tets[k]]) {
-              if (other == vertex) continue;
-              sum += displacement[other];
-              ++count;
-            }
+    rings.for_each_block(run_, [&](std::uint32_t begin, std::uint32_t end) {
+      RingGuard guard(unit_);
+      for (std::uint32_t which = begin; which < end; ++which) {
+        const std::uint32_t vertex = rings.vertices[which];
+        Vec3f sum = Vec3f::Zero();
+        int count = 0;
+        for (std::uint32_t k = rings.begin[which]; k < rings.begin[which + 1]; ++k) {
+          for (const std::uint32_t other : tets_[rings.tets[k]]) {
+            if (other == vertex) continue;
+            sum += displacement[other];
+            ++count;
           }
-          const Vec3f place = vertices_[vertex];
-          move(rings, which, sum / static_cast<float>(count), kWithin, guard);
-          displacement[vertex] = vertices_[vertex] - place;
         }
-      });
-    }
+        const Vec3f place = vertices_[vertex];
+        move(rings, which, sum / static_cast<float>(count), kWithin, guard);
+        displacement[vertex] = vertices_[vertex] - place;
+      }
+    });
   }
 
   bool all_arrived() const { return std::find(astray_.begin(), astray_.end(), 1) == astray_.end(); }

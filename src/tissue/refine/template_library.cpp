@@ -1,7 +1,9 @@
 #include "template_library.h"
 
 #include "numbering.h"
+#include "tissue/base/tet_shape.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace tissue {
@@ -122,41 +124,78 @@ Template fill(const Blueprint& blueprint, const Choices& choices) {
 const std::array<Vec3, 4> kWholeCorners = {Vec3(-1, 0, 0), Vec3(0, 1, -1), Vec3(1, 0, 0),
                                            Vec3(0, 1, 1)};
 
+// Measures all splittings of all shapes of a blueprint, batch by batch, and takes the best.
+class Fitting {
+ public:
+  Fitting(const Blueprint& blueprint, const std::array<Vec3, 4>& corners)
+      : blueprint_(blueprint), batch_((corners[1] - corners[0]).norm()) {
+    for (const Blueprint::Shape& shape : blueprint.shapes) {
+      const std::array<Vec3f, 10> points = points_of(shape, corners);
+      for (const Splitting& splitting : *shape.splittings) {
+        ranges_.emplace_back();
+        for (const auto& tet : splitting) {
+          owners_[batch_.count()] = ranges_.size() - 1;
+          batch_.add(points[tet[0]], points[tet[1]], points[tet[2]], points[tet[3]]);
+          if (batch_.count() == TetBatch::kCapacity) measure();
+        }
+      }
+    }
+    measure();
+  }
+
+  Fit best() const {
+    Fit result;
+    result.choices.reserve(blueprint_.shapes.size());
+    auto next = ranges_.begin();
+    for (const Blueprint::Shape& shape : blueprint_.shapes) {
+      const auto begin = next, end = begin + static_cast<std::ptrdiff_t>(shape.splittings->size());
+      const auto best =
+          end - begin == 1 ? begin : std::max_element(begin, end, [](const auto& a, const auto& b) {
+            return shape_score(a) < shape_score(b);
+          });
+      result.range.include(*best);
+      result.choices.push_back(static_cast<std::uint8_t>(best - begin));
+      next = end;
+    }
+    return result;
+  }
+
+ private:
+  // The corners of a part of this shape and the midpoints of its edges, from its first corner.
+  static std::array<Vec3f, 10> points_of(const Blueprint::Shape& shape,
+                                         const std::array<Vec3, 4>& corners) {
+    std::array<Vec3, 4> ends = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+    for (int k = 0; k < 3; ++k) {
+      for (int i = 0; i < 4; ++i) ends[k + 1] += shape.steps[k][i] * corners[i];
+    }
+    std::array<Vec3f, 10> points;
+    for (int i = 0; i < 4; ++i) points[i] = ends[i].cast<float>();
+    for (int e = 0; e < 6; ++e) {
+      points[4 + e] = 0.5f * (points[kTetEdges[e][0]] + points[kTetEdges[e][1]]);
+    }
+    return points;
+  }
+
+  void measure() {
+    std::array<float, TetBatch::kCapacity> lowest, highest;
+    batch_.measure(lowest.data(), highest.data());
+    for (int i = 0; i < batch_.count(); ++i) {
+      ranges_[owners_[i]].include({lowest[i], highest[i]});
+    }
+    batch_.clear();
+  }
+
+  const Blueprint& blueprint_;
+  TetBatch batch_;
+  // By shape and splitting, and which of them each tet of the batch belongs to.
+  std::vector<DihedralRange> ranges_;
+  std::array<std::size_t, TetBatch::kCapacity> owners_;
+};
+
 }  // namespace
 
 Fit fit(const Blueprint& blueprint, const std::array<Vec3, 4>& corners) {
-  Fit result;
-  result.choices.reserve(blueprint.shapes.size());
-  for (const Blueprint::Shape& shape : blueprint.shapes) {
-    std::array<Vec3, 10> points;
-    points[0] = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) {
-      points[k + 1] = Vec3::Zero();
-      for (int i = 0; i < 4; ++i) points[k + 1] += shape.steps[k][i] * corners[i];
-    }
-    for (int e = 0; e < 6; ++e) {
-      points[4 + e] = 0.5 * (points[kTetEdges[e][0]] + points[kTetEdges[e][1]]);
-    }
-    DihedralRange best;
-    double best_score = -1.0;
-    std::uint8_t choice = 0;
-    for (std::size_t s = 0; s < shape.splittings->size(); ++s) {
-      DihedralRange range;
-      for (const auto& tet : (*shape.splittings)[s]) {
-        range.include(
-            dihedral_range(points[tet[0]], points[tet[1]], points[tet[2]], points[tet[3]]));
-      }
-      const double score = shape.splittings->size() == 1 ? 0.0 : shape_score(range);
-      if (score > best_score) {
-        best = range;
-        best_score = score;
-        choice = static_cast<std::uint8_t>(s);
-      }
-    }
-    result.range.include(best);
-    result.choices.push_back(choice);
-  }
-  return result;
+  return Fitting(blueprint, corners).best();
 }
 
 TemplateLibrary::Entry& TemplateLibrary::entry(const TemplateKey& key) {
