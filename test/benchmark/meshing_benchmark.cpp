@@ -1,11 +1,16 @@
 // What meshing costs: the whole way from a volume in memory to a finished mesh, and the stages of
 // it, by size, method and number of threads. scripts/benchmark runs it and keeps the results.
 #include "support/shapes.h"
+#include "tissue/base/error.h"
 #include "tissue/refine/build_mesh.h"
 
 #include <benchmark/benchmark.h>
 
+#include <atomic>
+#include <chrono>
+#include <cmath>
 #include <map>
+#include <thread>
 
 namespace {
 
@@ -68,6 +73,40 @@ void density(benchmark::State& state) { build(state, options_for(state, Method::
 void surface(benchmark::State& state) { build(state, options_for(state, Method::kSurface)); }
 void uniform(benchmark::State& state) { build(state, options_for(state, Method::kUniform)); }
 
+// How long a build goes on after it was cancelled; every round at another moment of it.
+void cancel(benchmark::State& state) {
+  using Clock = std::chrono::steady_clock;
+  const auto seconds = [](Clock::duration time) {
+    return std::chrono::duration<double>(time).count();
+  };
+  const MeshOptions options = options_for(state, Method::kDensity);
+  const Clock::time_point start = Clock::now();
+  tissue::build_mesh(organ(), nullptr, options);
+  const double whole = seconds(Clock::now() - start);
+  double longest = 0.0, part = 0.0;
+  for (auto _ : state) {
+    tissue::Run run;
+    run.cancelled = std::make_shared<std::atomic<bool>>(false);
+    part = std::fmod(part + 0.3819660, 1.0);
+    Clock::time_point asked;
+    std::thread impatient([&] {
+      std::this_thread::sleep_for(std::chrono::duration<double>(part * whole));
+      asked = Clock::now();
+      *run.cancelled = true;
+    });
+    try {
+      tissue::build_mesh(organ(), nullptr, options, run);
+    } catch (const tissue::InputError&) {
+    }
+    const Clock::time_point ended = Clock::now();
+    impatient.join();
+    const double waited = std::max(0.0, seconds(ended - asked));
+    state.SetIterationTime(waited);
+    longest = std::max(longest, waited);
+  }
+  state.counters["longest_ms"] = 1e3 * longest;
+}
+
 // From 10⁴ to 3·10⁷ tets.
 void sizes(benchmark::internal::Benchmark* benchmark) {
   for (const int spacing : {5500, 2400, 1020, 530, 375}) benchmark->Args({spacing, 1});
@@ -87,4 +126,11 @@ BENCHMARK(density_4_sweeps)->Apply(sizes);
 BENCHMARK(density)->Apply(sizes);
 BENCHMARK(surface)->Apply([](auto* benchmark) { one_size(benchmark, 1020); });
 BENCHMARK(uniform)->Apply([](auto* benchmark) { one_size(benchmark, 340); });
+BENCHMARK(cancel)
+    ->Args({1020, 2})
+    ->Args({530, 2})
+    ->Args({375, 2})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime()
+    ->Iterations(25);
 BENCHMARK_MAIN();
