@@ -12,6 +12,8 @@ struct Body {
   std::vector<Triangle> surface;
   /// At the vertices.
   std::vector<float> densities;
+  /// Mean over each tet; empty where the mesh does not say.
+  std::vector<float> tet_densities;
 };
 
 /// Throws InputError as check_mesh does.

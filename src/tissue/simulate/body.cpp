@@ -13,6 +13,7 @@ Body body_of(const TetMesh& mesh) {
   body.tets = mesh.tets;
   body.surface = mesh.surface.empty() ? boundary_of(mesh.tets, mesh.vertices.size()) : mesh.surface;
   body.densities = mesh.densities;
+  body.tet_densities = mesh.tet_densities;
   return body;
 }
 

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "tissue/simulate/energy.h"
+#include "tissue/simulate/linear_solver.h"
+
+#include <memory>
+#include <vector>
+
+namespace tissue {
+
+struct EquilibriumOptions {
+  /// Of the residual: the norm of the forces on free nodes, by that of the forces that hold fixed
+  /// ones or, if it is larger, of those that were out of balance at the start.
+  double tolerance = 1e-3;
+  int max_iterations = 200;
+};
+
+struct EquilibriumReport {
+  bool converged = false;
+  int iterations = 0;
+  double residual = 0.0;
+  /// At the end [J].
+  double energy = 0.0;
+};
+
+/// Finds where a body comes to rest: the nearest minimum of its energy over the free nodes, by
+/// Newton's method with a line search.
+class Equilibrium {
+ public:
+  /// `energies` must outlive this; `pattern` has a block wherever one of them adds one. Throws
+  /// InputError E_PARAM if no node is free.
+  Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
+              std::vector<std::uint8_t> fixed_nodes, std::unique_ptr<LinearSolver> solver);
+
+  /// From `positions`, in which fixed nodes are where they are to be, to the equilibrium. Where it
+  /// is not found `positions` holds the best finite state that was.
+  EquilibriumReport solve(Eigen::VectorXd& positions, const EquilibriumOptions& options);
+
+  /// How the free nodes move when the fixed ones do, to first order: a start nearer to the
+  /// equilibrium than leaving them behind. `motion` holds the motion of fixed nodes.
+  void follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
+
+  double energy(const Eigen::VectorXd& positions) const;
+  /// dE/dx of all nodes; at fixed ones it is the force that holds them [N].
+  Eigen::VectorXd gradient(const Eigen::VectorXd& positions) const;
+  const char* solver_name() const { return solver_->name(); }
+
+ private:
+  bool factorise(const Eigen::VectorXd& positions);
+  Eigen::VectorXd free_part(const Eigen::VectorXd& all) const;
+  Eigen::VectorXd step_for(const Eigen::VectorXd& gradient) const;
+  double fixed_norm(const Eigen::VectorXd& gradient) const;
+  bool line_search(const Eigen::VectorXd& step, const Eigen::VectorXd& gradient,
+                   Eigen::VectorXd& positions, double& energy) const;
+
+  std::vector<const Energy*> energies_;
+  BlockMatrix hessian_;
+  // For each coordinate its number among the free ones, or −1.
+  std::vector<int> number_;
+  int free_count_ = 0;
+  double largest_stiffness_ = 0.0;
+  std::unique_ptr<LinearSolver> solver_;
+};
+
+}  // namespace tissue

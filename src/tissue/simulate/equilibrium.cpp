@@ -1,0 +1,144 @@
+#include "tissue/simulate/equilibrium.h"
+
+#include "tissue/base/error.h"
+
+#include <cmath>
+#include <utility>
+
+namespace tissue {
+namespace {
+
+constexpr double kRounding = 1e-13;
+
+double extent(const Eigen::VectorXd& positions) {
+  const Eigen::Map<const Eigen::Matrix3Xd> places(positions.data(), 3, positions.size() / 3);
+  return (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
+}
+
+}  // namespace
+
+Equilibrium::Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
+                         std::vector<std::uint8_t> fixed_nodes,
+                         std::unique_ptr<LinearSolver> solver)
+    : energies_(std::move(energies)), hessian_(std::move(pattern)), solver_(std::move(solver)) {
+  number_.reserve(3 * fixed_nodes.size());
+  for (const std::uint8_t fixed : fixed_nodes) {
+    for (int axis = 0; axis < 3; ++axis) number_.push_back(fixed != 0 ? -1 : free_count_++);
+  }
+  if (free_count_ == 0) throw InputError(ErrorCode::kParam, "anchors: every vertex is held");
+}
+
+double Equilibrium::energy(const Eigen::VectorXd& positions) const {
+  double sum = 0.0;
+  for (const Energy* energy : energies_) sum += energy->value(positions);
+  return sum;
+}
+
+Eigen::VectorXd Equilibrium::gradient(const Eigen::VectorXd& positions) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(positions.size());
+  for (const Energy* energy : energies_) energy->add_gradient(positions, sum);
+  return sum;
+}
+
+Eigen::VectorXd Equilibrium::free_part(const Eigen::VectorXd& all) const {
+  Eigen::VectorXd free(free_count_);
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    if (number_[i] >= 0) free[number_[i]] = all[static_cast<Eigen::Index>(i)];
+  }
+  return free;
+}
+
+double Equilibrium::fixed_norm(const Eigen::VectorXd& gradient) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    const double force = gradient[static_cast<Eigen::Index>(i)];
+    if (number_[i] < 0) sum += force * force;
+  }
+  return std::sqrt(sum);
+}
+
+bool Equilibrium::factorise(const Eigen::VectorXd& positions) {
+  hessian_.set_zero();
+  for (const Energy* energy : energies_) energy->add_hessian(positions, hessian_);
+  Eigen::SparseMatrix<double> lower = hessian_.lower_triangle(number_, free_count_);
+  const Eigen::VectorXd diagonal = lower.diagonal();
+  largest_stiffness_ = diagonal.maxCoeff();
+  if (!std::isfinite(diagonal.sum())) return false;
+  if (solver_->factorise(lower)) return true;
+  // Flat directions of a convex neighbour of the Hessian: held by a little, then by more.
+  for (double shift = 1e-10; shift < 1.0; shift *= 100.0) {
+    Eigen::SparseMatrix<double> shifted = lower;
+    shifted.diagonal() = diagonal.array() + shift * largest_stiffness_;
+    if (solver_->factorise(shifted)) return true;
+  }
+  return false;
+}
+
+Eigen::VectorXd Equilibrium::step_for(const Eigen::VectorXd& gradient) const {
+  const Eigen::VectorXd free = solver_->solve(free_part(gradient));
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
+  for (std::size_t i = 0; i < number_.size(); ++i) {
+    if (number_[i] >= 0) step[static_cast<Eigen::Index>(i)] = -free[number_[i]];
+  }
+  return step;
+}
+
+bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd& gradient,
+                              Eigen::VectorXd& positions, double& energy_now) const {
+  constexpr double kArmijo = 1e-4;
+  const double slope = gradient.dot(step);
+  if (!(slope < 0.0) || !step.allFinite()) return false;
+  const double before = free_part(gradient).norm();
+  for (double length = 1.0; length > 1e-10; length *= 0.5) {
+    Eigen::VectorXd there = positions + length * step;
+    const double energy_there = energy(there);
+    const bool lower = energy_there <= energy_now + kArmijo * length * slope;
+    // Near the minimum what is gained drowns in the energy's rounding; forces still tell.
+    const bool drowned = -length * slope <= 1e-9 * std::abs(energy_now) &&
+                         std::abs(energy_there - energy_now) <= 1e-9 * std::abs(energy_now);
+    if (!std::isfinite(energy_there)) continue;
+    if (lower || (drowned && free_part(this->gradient(there)).norm() < before)) {
+      positions = std::move(there);
+      energy_now = energy_there;
+      return true;
+    }
+  }
+  return false;
+}
+
+void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion) {
+  if (!factorise(positions)) {
+    positions += motion;
+    return;
+  }
+  // With the forces that are out of balance left as they are, so that a start at an equilibrium
+  // stays near one.
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size());
+  hessian_.multiply_add(motion, pull);
+  positions += motion + step_for(pull);
+}
+
+EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
+                                     const EquilibriumOptions& options) {
+  EquilibriumReport report;
+  report.energy = energy(positions);
+  Eigen::VectorXd forces = gradient(positions);
+  const double at_start = free_part(forces).norm();
+  for (;; ++report.iterations) {
+    const double out_of_balance = free_part(forces).norm();
+    const double floor = kRounding * largest_stiffness_ * extent(positions);
+    const double scale = std::max(at_start, fixed_norm(forces));
+    report.residual = scale > 0.0 ? out_of_balance / scale : 0.0;
+    report.converged = report.residual <= options.tolerance || out_of_balance <= floor;
+    if (report.converged || report.iterations == options.max_iterations) return report;
+    if (!factorise(positions)) return report;
+    if (!line_search(step_for(forces), forces, positions, report.energy)) {
+      // Nothing lower along the way downhill: as near as the numbers allow.
+      report.converged = out_of_balance <= kRounding * largest_stiffness_ * extent(positions);
+      return report;
+    }
+    forces = gradient(positions);
+  }
+}
+
+}  // namespace tissue

@@ -1,0 +1,364 @@
+// Finite elements against what is known exactly.
+#include "support/bodies.h"
+#include "support/mesh_checks.h"
+#include "tissue/simulate/elastic_energy.h"
+#include "tissue/simulate/equilibrium.h"
+#include "tissue/simulate/material.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+#include <set>
+
+namespace {
+
+using namespace tissue;
+using tissue_test::kuhn_block;
+using tissue_test::nodes_where;
+
+const Material kSoft = {{{0.0, 5e4}}, 0.45, 1000.0};
+
+// A body of one constitution whose held nodes and loads a test sets.
+struct Problem {
+  Problem(Body b, int order, Constitution constitution, const Material& material, int threads = 1)
+      : body(std::move(b)),
+        elements(body, order),
+        lame(lame_of(material, body)),
+        energy(elements, lame, constitution, with_threads(threads)),
+        positions(rest_positions(elements)) {}
+
+  static Run with_threads(int threads) {
+    Run run;
+    run.threads = threads;
+    return run;
+  }
+
+  Vec3 displacement(std::size_t node) const {
+    return positions.segment<3>(static_cast<Eigen::Index>(3 * node)) - elements.rest()[node];
+  }
+  void move(std::size_t node, const Vec3& by) {
+    positions.segment<3>(static_cast<Eigen::Index>(3 * node)) += by;
+  }
+
+  EquilibriumReport solve(const std::vector<std::uint8_t>& held, const Energy* load = nullptr,
+                          double tolerance = 1e-10) {
+    std::vector<const Energy*> energies = {&energy};
+    if (load != nullptr) energies.push_back(load);
+    Equilibrium equilibrium(energies, energy.empty_hessian(), held, direct_solver());
+    Eigen::VectorXd motion = positions - rest_positions(elements);
+    for (std::size_t node = 0; node < held.size(); ++node) {
+      if (held[node] == 0) motion.segment<3>(static_cast<Eigen::Index>(3 * node)).setZero();
+    }
+    positions -= motion;
+    equilibrium.follow(positions, motion);
+    return equilibrium.solve(positions, {tolerance, 100});
+  }
+
+  Body body;
+  FiniteElements elements;
+  std::vector<Lame> lame;
+  ElasticEnergy energy;
+  Eigen::VectorXd positions;
+};
+
+std::vector<std::uint8_t> boundary_nodes(const Problem& problem) {
+  std::vector<std::uint8_t> on(problem.elements.node_count(), 0);
+  std::set<Edge> edges;
+  for (const Triangle& triangle : problem.body.surface) {
+    for (int i = 0; i < 3; ++i) {
+      on[triangle[i]] = 1;
+      const auto [low, high] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
+      edges.insert({low, high});
+    }
+  }
+  const std::vector<Edge>& midpoints = problem.elements.midpoints();
+  for (std::size_t i = 0; i < midpoints.size(); ++i) {
+    if (edges.count(midpoints[i]) != 0) on[problem.body.rest.size() + i] = 1;
+  }
+  return on;
+}
+
+// The largest error of an affine displacement of the boundary within the body, by its size.
+double patch_error(Body body, int order, Constitution constitution) {
+  Problem problem(std::move(body), order, constitution, kSoft);
+  Mat3 gradient;
+  gradient << 0.01, 0.02, -0.01, 0.005, -0.015, 0.01, 0.02, -0.005, 0.01;
+  const std::vector<std::uint8_t> held = boundary_nodes(problem);
+  for (std::size_t node = 0; node < held.size(); ++node) {
+    if (held[node] != 0) problem.move(node, gradient * problem.elements.rest()[node]);
+  }
+  EXPECT_TRUE(problem.solve(held, nullptr, 1e-13).residual < 1e-9);
+  double largest = 0.0, size = 0.0;
+  for (std::size_t node = 0; node < held.size(); ++node) {
+    const Vec3& rest = problem.elements.rest()[node];
+    largest = std::max(largest, (problem.displacement(node) - gradient * rest).norm());
+    size = std::max(size, rest.norm());
+  }
+  return largest / size;
+}
+
+TEST(Elasticity, T12_PatchTestHoldsOnUniformAndRefinedMeshesInEveryModelAndOrder) {
+  const Body refined = body_of(tissue_test::refined_ball(0.016));
+  const Body block = kuhn_block({3, 2, 2}, {0.03, 0.02, 0.02});
+  for (const int order : {1, 2}) {
+    for (const auto constitution :
+         {Constitution::kLinear, Constitution::kCorotational, Constitution::kNeoHookean}) {
+      EXPECT_LE(patch_error(block, order, constitution), 1e-10);
+    }
+    EXPECT_LE(patch_error(refined, order, Constitution::kLinear), 1e-10);
+  }
+}
+
+TEST(Elasticity, T12_PatchTestFailsWhereANodeHangs) {
+  Body body = kuhn_block({3, 3, 3}, {0.03, 0.03, 0.03});
+  // The tet in the middle gets a vertex on its first edge that its neighbours know nothing of.
+  const std::size_t middle = body.tets.size() / 2;
+  const Tet tet = body.tets[middle];
+  const auto added = static_cast<std::uint32_t>(body.rest.size());
+  body.rest.push_back(0.5f * (body.rest[tet[0]] + body.rest[tet[1]]));
+  body.tets[middle] = {added, tet[1], tet[2], tet[3]};
+  body.tets.push_back({tet[0], added, tet[2], tet[3]});
+  body.tet_densities.push_back(1.0f);
+  EXPECT_GT(patch_error(body, 1, Constitution::kLinear), 1e-6);
+}
+
+TEST(Elasticity, T11_ForcesAndStiffnessOfAMeshAreDerivativesOfItsEnergy) {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> uniform(-1e-8, 1e-8);
+  for (const int order : {1, 2}) {
+    for (const auto constitution :
+         {Constitution::kLinear, Constitution::kCorotational, Constitution::kNeoHookean}) {
+      Problem problem(kuhn_block({1, 1, 1}, {0.02, 0.02, 0.02}), order, constitution, kSoft);
+      for (Eigen::Index i = 0; i < problem.positions.size(); ++i) {
+        problem.positions[i] += uniform(generator);
+      }
+      const auto gradient_at = [&](const Eigen::VectorXd& x) {
+        Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
+        problem.energy.add_gradient(x, gradient);
+        return gradient;
+      };
+      const Eigen::VectorXd gradient = gradient_at(problem.positions);
+      BlockMatrix hessian = problem.energy.empty_hessian();
+      problem.energy.add_hessian(problem.positions, hessian);
+      const double h = 1e-7;
+      for (Eigen::Index i = 0; i < problem.positions.size(); ++i) {
+        Eigen::VectorXd unit = Eigen::VectorXd::Zero(problem.positions.size());
+        unit[i] = 1.0;
+        const Eigen::VectorXd more = problem.positions + h * unit,
+                              less = problem.positions - h * unit;
+        EXPECT_NEAR((problem.energy.value(more) - problem.energy.value(less)) / (2.0 * h),
+                    gradient[i], 1e-3 * gradient.norm());
+        Eigen::VectorXd column = Eigen::VectorXd::Zero(unit.size());
+        hessian.multiply_add(unit, column);
+        const Eigen::VectorXd difference = (gradient_at(more) - gradient_at(less)) / (2.0 * h);
+        // So near to rest little had to be made convex; far from it the laws are tested alone.
+        EXPECT_LE((column - difference).norm(), 1e-4 * difference.norm());
+      }
+    }
+  }
+}
+
+TEST(Elasticity, T10_RigidMotionOfAMeshMakesNoForce) {
+  Problem problem(kuhn_block({4, 2, 2}, {0.04, 0.02, 0.02}), 2, Constitution::kCorotational, kSoft);
+  for (double degrees = 0.0; degrees <= 720.0; degrees += 45.0) {
+    const Mat3 rotation =
+        Eigen::AngleAxisd(degrees * M_PI / 180.0, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    for (std::size_t node = 0; node < problem.elements.node_count(); ++node) {
+      problem.positions.segment<3>(static_cast<Eigen::Index>(3 * node)) =
+          rotation * problem.elements.rest()[node] + Vec3(6, -8, 0);
+    }
+    Eigen::VectorXd forces = Eigen::VectorXd::Zero(problem.positions.size());
+    problem.energy.add_gradient(problem.positions, forces);
+    EXPECT_LE(forces.norm(), 1e-9 * 5e4 * 0.04 * 0.04);
+  }
+}
+
+// Mean sag of the free end of the beam of FACTS.md, in millimetres.
+double sag(const std::array<int, 3>& cells, int order, Constitution constitution) {
+  Problem problem(kuhn_block(cells, {0.2, 0.1, 0.1}), order, constitution, kSoft);
+  const std::vector<Vec3>& rest = problem.elements.rest();
+  const GravityEnergy gravity(problem.elements, 1000.0, Vec3(0, 0, -9.81));
+  const EquilibriumReport report =
+      problem.solve(nodes_where(rest, [](const Vec3& p) { return p.x() < 1e-6; }), &gravity, 1e-8);
+  EXPECT_TRUE(report.converged) << report.residual;
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t node = 0; node < rest.size(); ++node) {
+    if (rest[node].x() < 0.2 - 1e-6) continue;
+    sum += std::abs(problem.displacement(node).z());
+    ++count;
+  }
+  return 1e3 * sum / count;
+}
+
+// Small strain has 55.8 mm as its limit, and what an order of elements misses of it was measured
+// by others: −15.7 % and −2.6 % at 1,377 nodes.
+TEST(Elasticity, AClampedBeamSagsAsFarAsItsModelHasItsLimit) {
+  EXPECT_NEAR(sag({16, 8, 8}, 1, Constitution::kLinear), 55.8 * (1.0 - 0.157), 0.15);
+  EXPECT_NEAR(sag({8, 4, 4}, 2, Constitution::kLinear), 55.8, 0.03 * 55.8);
+  EXPECT_NEAR(sag({8, 4, 4}, 2, Constitution::kNeoHookean), 53.42, 0.05);
+  EXPECT_NEAR(sag({8, 4, 4}, 2, Constitution::kCorotational), 54.3, 0.03 * 54.3);
+}
+
+// Displacement of the tumour sphere of FACTS.md: a ball of radius a in one of radius b whose
+// surface moves out by U.
+struct TumourSphere {
+  double inner, a, b;
+  TumourSphere(double radius, double outer_radius, double moved, const Lame& tissue,
+               const Lame& tumour) {
+    const double k_m = tissue.lambda + 2.0 / 3.0 * tissue.mu;
+    const double k_i = tumour.lambda + 2.0 / 3.0 * tumour.mu;
+    const double cube = radius * radius * radius;
+    // e = A + B/a³ and 3 K_i e = 3 K_m A − 4 μ_m B/a³ and A b + B/b² = U.
+    const double ratio = 3.0 * (k_m - k_i) / (3.0 * k_i + 4.0 * tissue.mu);
+    a = moved / (outer_radius + ratio * cube / (outer_radius * outer_radius));
+    b = ratio * cube * a;
+    inner = a + b / cube;
+  }
+};
+
+// Relative L2 error of the displacement over the nodes of a tumour sphere.
+double tumour_sphere_error(const TetMesh& mesh, int order) {
+  constexpr double kRadius = 0.010, kMoved = 1e-4;
+  Body body = tissue_test::ball_body(mesh, kRadius, 255.0f, 60.0f);
+  double outer = 0.0;
+  for (const Triangle& triangle : body.surface) {
+    for (const std::uint32_t v : triangle) outer += body.rest[v].cast<double>().norm();
+  }
+  outer /= 3.0 * static_cast<double>(body.surface.size());
+  const Material material = {{{60.0, 3e3}, {255.0, 6e4}}, 0.3, 1000.0};
+  Problem problem(std::move(body), order, Constitution::kLinear, material);
+  const TumourSphere exact(kRadius, outer, kMoved, lame_of(3e3, 0.3), lame_of(6e4, 0.3));
+  const auto expected = [&](const Vec3& place) -> Vec3 {
+    const double r = place.norm();
+    return r < kRadius ? Vec3(exact.inner * place)
+                       : Vec3((exact.a + exact.b / (r * r * r)) * place);
+  };
+  const std::vector<std::uint8_t> held = boundary_nodes(problem);
+  for (std::size_t node = 0; node < held.size(); ++node) {
+    if (held[node] != 0) problem.move(node, expected(problem.elements.rest()[node]));
+  }
+  EXPECT_TRUE(problem.solve(held).converged);
+  double squares = 0.0, all = 0.0;
+  for (std::size_t node = 0; node < held.size(); ++node) {
+    const Vec3 wanted = expected(problem.elements.rest()[node]);
+    squares += (problem.displacement(node) - wanted).squaredNorm();
+    all += wanted.squaredNorm();
+  }
+  return std::sqrt(squares / all);
+}
+
+TEST(Elasticity, TumourSphereOnDensityRefinedMeshesComesNearerAsTheyGetFiner) {
+  const double coarse = tumour_sphere_error(tissue_test::refined_ball(0.020), 1);
+  const double fine = tumour_sphere_error(tissue_test::refined_ball(0.010), 1);
+  EXPECT_LT(fine, coarse / 1.8);
+}
+
+// A bar of layers, each with its own stiffness, pulled along its length with its sides sliding:
+// strains are in inverse proportion to stiffness, exactly.
+TEST(Elasticity, T12_ALayeredBarIsExactWhereLayersMeetAtFaces) {
+  for (const int order : {1, 2}) {
+    Body body = kuhn_block({8, 2, 2}, {0.08, 0.02, 0.02});
+    for (std::size_t t = 0; t < body.tets.size(); ++t) {
+      float x = 0.0f;
+      for (const std::uint32_t v : body.tets[t]) x += 0.25f * body.rest[v].x();
+      body.tet_densities[t] = std::fmod(x, 0.04f) < 0.02f ? 1.0f : 2.0f;
+    }
+    // Without lateral strain coupling (ν = 0) the series is one-dimensional.
+    const Material material = {{{1.0, 1e3}, {2.0, 1e5}}, 0.0, 1000.0};
+    Problem problem(std::move(body), order, Constitution::kLinear, material);
+    const std::vector<Vec3>& rest = problem.elements.rest();
+    const auto held =
+        nodes_where(rest, [](const Vec3& p) { return p.x() < 1e-7 || p.x() > 0.08 - 1e-7; });
+    const double pulled = 1e-3, soft = pulled / 0.04 / (1.0 + 1e-2), hard = 1e-2 * soft;
+    const auto expected = [&](double x) {
+      const double period = std::floor(x / 0.04 + 1e-6), rest_of = x - 0.04 * period;
+      return period * 0.02 * (soft + hard) + std::min(rest_of, 0.02) * soft +
+             std::max(0.0, rest_of - 0.02) * hard;
+    };
+    for (std::size_t node = 0; node < rest.size(); ++node) {
+      if (held[node] != 0) problem.move(node, Vec3(expected(rest[node].x()), 0, 0));
+    }
+    EXPECT_TRUE(problem.solve(held, nullptr, 1e-12).converged);
+    for (std::size_t node = 0; node < rest.size(); ++node) {
+      // Places are stored as floats.
+      EXPECT_NEAR(problem.displacement(node).x(), expected(rest[node].x()), 1e-8 * 0.08);
+    }
+  }
+}
+
+TEST(Elasticity, ResultsAreTheSameInMillimetresAfterRenumberingAndWithTwoThreads) {
+  const auto bent = [](double unit, bool renumbered, int threads) {
+    Body body = kuhn_block({6, 3, 3}, {0.06 * unit, 0.03 * unit, 0.03 * unit});
+    std::vector<std::uint32_t> number(body.rest.size());
+    std::iota(number.begin(), number.end(), 0u);
+    if (renumbered) {
+      std::shuffle(number.begin(), number.end(), std::mt19937(4));
+      std::vector<Vec3f> moved(body.rest.size());
+      for (std::size_t v = 0; v < moved.size(); ++v) moved[number[v]] = body.rest[v];
+      body.rest = moved;
+      for (Tet& tet : body.tets) {
+        for (std::uint32_t& v : tet) v = number[v];
+      }
+    }
+    // The same tissue: Pa are kg/(m s²), so numbers fall as the unit of length shrinks.
+    const Material material = {{{0.0, 5e4 / unit}}, 0.45, 1000.0 / (unit * unit * unit)};
+    Problem problem(std::move(body), 1, Constitution::kNeoHookean, material, threads);
+    const GravityEnergy gravity(problem.elements, material.mass_density, {0, 0, -9.81 * unit});
+    EXPECT_TRUE(problem
+                    .solve(nodes_where(problem.elements.rest(),
+                                       [&](const Vec3& p) { return p.x() < 1e-6 * unit; }),
+                           &gravity)
+                    .converged);
+    std::vector<Vec3> result;
+    for (const std::uint32_t v : number) result.push_back(problem.displacement(v) / unit);
+    return result;
+  };
+  const std::vector<Vec3> metres = bent(1.0, false, 1);
+  EXPECT_EQ(metres, bent(1.0, false, 2));
+  const std::vector<Vec3> millimetres = bent(1e3, false, 1), shuffled = bent(1.0, true, 1);
+  for (std::size_t v = 0; v < metres.size(); ++v) {
+    EXPECT_LE((metres[v] - millimetres[v]).norm(), 1e-7 * 0.06);
+    EXPECT_LE((metres[v] - shuffled[v]).norm(), 1e-9 * 0.06);
+  }
+}
+
+TEST(Elasticity, S4_T14_ABodyThatNothingHoldsIsFoundByItsPivots) {
+  Problem problem(kuhn_block({3, 2, 2}, {0.03, 0.02, 0.02}), 1, Constitution::kLinear, kSoft);
+  BlockMatrix hessian = problem.energy.empty_hessian();
+  problem.energy.add_hessian(problem.positions, hessian);
+  std::vector<int> number(3 * problem.elements.node_count());
+  std::iota(number.begin(), number.end(), 0);
+  const auto lower = hessian.lower_triangle(number, static_cast<int>(number.size()));
+  EXPECT_FALSE(eigen_solver()->factorise(lower));
+}
+
+// Started from shapes that no tissue ever has.
+TEST(Elasticity, T4_T5_T6_AStableBodyComesBackFromBeingFlattenedCollapsedAndTurnedInsideOut) {
+  for (int shape = 0; shape < 3; ++shape) {
+    Problem problem(kuhn_block({4, 4, 4}, {0.04, 0.04, 0.04}), 1, Constitution::kNeoHookean,
+                    {{{0.0, 1e4}}, 0.3, 1000.0});
+    const std::vector<Vec3>& rest = problem.elements.rest();
+    const auto held = nodes_where(rest, [](const Vec3& p) { return p.z() < 1e-7; });
+    for (std::size_t node = 0; node < rest.size(); ++node) {
+      if (held[node] != 0) continue;
+      Vec3 place = rest[node];
+      if (shape == 0) place.z() = 0.0;
+      if (shape == 1) place = Vec3(0.02, 0.02, 0.0);
+      if (shape == 2) place.z() *= -1.0;
+      problem.positions.segment<3>(static_cast<Eigen::Index>(3 * node)) = place;
+    }
+    Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), held,
+                            direct_solver());
+    const double before = equilibrium.energy(problem.positions);
+    const EquilibriumReport report = equilibrium.solve(problem.positions, {1e-8, 400});
+    EXPECT_TRUE(report.converged) << shape << " " << report.residual;
+    EXPECT_LE(report.energy, before);
+    for (std::size_t node = 0; node < rest.size(); ++node) {
+      EXPECT_LE(problem.displacement(node).norm(), 1e-5 * 0.04) << shape;
+    }
+  }
+}
+
+}  // namespace

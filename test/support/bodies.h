@@ -1,0 +1,26 @@
+#pragma once
+
+#include "tissue/simulate/body.h"
+
+#include <array>
+#include <functional>
+
+namespace tissue_test {
+
+/// A block from the origin to `size` [m], `cells` cubes along each axis, each of six Kuhn tets.
+tissue::Body kuhn_block(const std::array<int, 3>& cells, const tissue::Vec3& size);
+
+/// A density-refined ball of 30 mm radius around the origin with a dense ball of a third of that in
+/// it: coarse tets of density 255 in the middle, fine ones of density 60 around. Smaller `spacing`
+/// [m], finer mesh.
+tissue::TetMesh refined_ball(double spacing, int sections = 3);
+
+/// The body of a mesh from the mesher, with each tet's density by whether its centroid lies within
+/// `radius` of the origin.
+tissue::Body ball_body(const tissue::TetMesh& mesh, double radius, float inside, float outside);
+
+/// One flag for each of a body's vertices or an element's nodes.
+std::vector<std::uint8_t> nodes_where(const std::vector<tissue::Vec3>& places,
+                                      const std::function<bool(const tissue::Vec3&)>& chosen);
+
+}  // namespace tissue_test
