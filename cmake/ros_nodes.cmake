@@ -26,7 +26,7 @@ foreach(node volume_node mesher_node deformer_node)
 endforeach()
 
 install(TARGETS
-    mesh_volume volume_node mesher_node deformer_node
+    mesh_volume run_scene volume_node mesher_node deformer_node
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS
     tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_refine tissue_ros

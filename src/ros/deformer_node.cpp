@@ -8,6 +8,7 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <soft_tissue_sim/SimulationStatus.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -40,11 +41,15 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
   using TetMesh = soft_tissue_sim::TetMesh;
   mesh_subscriber_ = handle.subscribe<TetMesh>(
       "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
+  tools_.resize(scene_.tools.size());
+  heard_.resize(scene_.tools.size());
   using PoseStamped = geometry_msgs::PoseStamped;
-  pose_subscriber_ = handle.subscribe<PoseStamped>(
-      scene_.tool.name + "/measured_cp", 1,
-      [this](const PoseStamped::ConstPtr& pose) { take_pose(*pose); }, ros::VoidConstPtr(),
-      ros::TransportHints().tcpNoDelay());
+  for (std::size_t i = 0; i < scene_.tools.size(); ++i) {
+    pose_subscribers_.push_back(handle.subscribe<PoseStamped>(
+        scene_.tools[i].name + "/measured_cp", 1,
+        [this, i](const PoseStamped::ConstPtr& pose) { take_pose(i, *pose); }, ros::VoidConstPtr(),
+        ros::TransportHints().tcpNoDelay()));
+  }
 
   const auto every = [&](double rate, void (DeformerNode::*work)()) {
     timers_.push_back(handle.createWallTimer(
@@ -80,7 +85,8 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
                        outcome.sentence.c_str());
     return;
   }
-  tool_.reset();
+  lose_tools();
+  stepped_ = false;
   last_step_ = {};
   step_seconds_ = 0.0;
   markers_are_new_ = true;
@@ -88,7 +94,7 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
            simulation_->mesh.tets.size());
 }
 
-void DeformerNode::take_pose(const geometry_msgs::PoseStamped& pose) {
+void DeformerNode::take_pose(std::size_t tool, const geometry_msgs::PoseStamped& pose) {
   const Outcome outcome = guarded([&] {
     if (!simulation_) {
       ROS_WARN_ONCE("deformer_node: no mesh yet, poses are ignored");
@@ -102,7 +108,7 @@ void DeformerNode::take_pose(const geometry_msgs::PoseStamped& pose) {
     std::string why_not;
     const auto transformed = pose_in_frame(pose, simulation_->mesh.frame_id, transforms_, why_not);
     if (transformed) {
-      move_to(*transformed);
+      move_to(tool, *transformed);
     } else {
       drop_pose(why_not);
     }
@@ -110,22 +116,34 @@ void DeformerNode::take_pose(const geometry_msgs::PoseStamped& pose) {
   if (!outcome.ok()) drop_pose(outcome.sentence);
 }
 
-void DeformerNode::move_to(const geometry_msgs::PoseStamped& pose) {
-  // A bag that starts again, or a clock that was set back: the tissue starts again too.
-  if (pose.header.stamp < stamp_) {
+void DeformerNode::move_to(std::size_t tool, const geometry_msgs::PoseStamped& pose) {
+  // A bag that starts again, or a clock that was set back: the tissue starts again too. Tools of
+  // their own clocks may be a little behind each other.
+  const ros::Duration behind = stamp_ - pose.header.stamp;
+  if (behind > ros::Duration(tools_.size() > 1 ? parameters_.tool_timeout : 0.0)) {
     simulation_->scene.reset();
     time_jumped_ = true;
-    tool_.reset();
+    lose_tools();
+    stamp_ = pose.header.stamp;
   }
-  const double dt = tool_ ? (pose.header.stamp - stamp_).toSec() : 0.0;
+  const double dt = has_a_tool() ? std::max(0.0, (pose.header.stamp - stamp_).toSec()) : 0.0;
   const auto& p = pose.pose.position;
-  const tissue::ToolPose tool = {tissue::Vec3(p.x, p.y, p.z), std::nullopt};
+  const auto& q = pose.pose.orientation;
+  tissue::ToolPoses tools = tools_;
+  tools[tool] = tissue::ToolPose{tissue::Vec3(p.x, p.y, p.z), std::nullopt,
+                                 Eigen::Quaterniond(q.w, q.x, q.y, q.z)};
   const ros::WallTime start = ros::WallTime::now();
-  last_step_ = simulation_->scene.step(tool, dt);
+  last_step_ = simulation_->scene.step(tools, dt);
   step_seconds_ = (ros::WallTime::now() - start).toSec();
-  tool_ = tool;
-  stamp_ = pose.header.stamp;
-  heard_ = ros::WallTime::now();
+  tools_ = std::move(tools);
+  stamp_ = std::max(stamp_, pose.header.stamp);
+  heard_[tool] = ros::WallTime::now();
+}
+
+void DeformerNode::lose_tools() { tools_.assign(tools_.size(), std::nullopt); }
+
+bool DeformerNode::has_a_tool() const {
+  return std::any_of(tools_.begin(), tools_.end(), [](const auto& tool) { return bool(tool); });
 }
 
 void DeformerNode::drop_pose(const std::string& why) {
@@ -135,11 +153,20 @@ void DeformerNode::drop_pose(const std::string& why) {
 
 void DeformerNode::watch_tool() {
   if (!simulation_) return;
-  const bool silent = tool_ && (ros::WallTime::now() - heard_).toSec() > parameters_.tool_timeout;
-  if (!silent && (tool_ || !simulation_->scene.recovering())) return;
+  bool silent = false;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!tools_[i] || (ros::WallTime::now() - heard_[i]).toSec() <= parameters_.tool_timeout) {
+      continue;
+    }
+    tools_[i].reset();
+    silent = true;
+  }
+  // A scene without tools, or before the first of them is heard, still has its weight.
+  const bool never_stepped = !stepped_ && tools_.empty();
+  if (!silent && !never_stepped && (has_a_tool() || !simulation_->scene.recovering())) return;
+  stepped_ = true;
   // The first step without a tool lets go; the others relax.
-  last_step_ = simulation_->scene.step(std::nullopt, 1.0 / parameters_.cloud_rate);
-  tool_.reset();
+  last_step_ = simulation_->scene.step(tools_, 1.0 / parameters_.cloud_rate);
 }
 
 void DeformerNode::publish_cloud() {
@@ -158,9 +185,14 @@ void DeformerNode::publish_markers() {
   const std::string& frame = simulation_->mesh.frame_id;
   auto markers = level_markers(
       simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return positions[v]; }, frame);
-  markers.markers.push_back(ball_marker("tool", tool_ ? tool_->position : tissue::Vec3::Zero(),
-                                        scene_.tool.radius, 1.0f, frame));
-  if (!tool_) markers.markers.back().action = visualization_msgs::Marker::DELETE;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const tissue::ToolDescription& tool = scene_.tools[i];
+    // The one tool of most scenes has had this name from the start.
+    const std::string name = tools_.size() == 1 ? "tool" : tool.name;
+    markers.markers.push_back(ball_marker(
+        name, tools_[i] ? tools_[i]->position : tissue::Vec3::Zero(), tool.radius, 1.0f, frame));
+    if (!tools_[i]) markers.markers.back().action = visualization_msgs::Marker::DELETE;
+  }
   marker_publisher_.publish(markers_are_new_ ? replacing_all(markers) : markers);
   markers_are_new_ = false;
 }
@@ -176,7 +208,7 @@ void DeformerNode::publish_status() {
   status.header.frame_id = simulation_->mesh.frame_id;
   status.mesh_uuid = simulation_->mesh.uuid;
   status.scene = scene_.name;
-  status.model = scene_.model;
+  status.model = tissue::name(scene_.model);
   for (const tissue::EffectCost& cost : scene.effect_costs()) {
     soft_tissue_sim::EffectCost effect;
     effect.name = cost.name;
@@ -185,14 +217,17 @@ void DeformerNode::publish_status() {
     status.effects.push_back(effect);
   }
   status.step_seconds = step_seconds_;
-  status.energy = std::numeric_limits<double>::quiet_NaN();
+  status.iterations = static_cast<std::uint32_t>(last_step_.iterations);
+  status.residual = last_step_.residual;
+  status.energy = last_step_.energy.value_or(std::numeric_limits<double>::quiet_NaN());
   status.min_det_f = quality.min_det_f;
   status.inverted = quality.inverted;
   status.moved_vertices = last_step_.moved_vertices;
   status.dropped_poses = dropped_poses_;
   status.rejected_meshes = rejected_meshes_;
   if (last_step_.clamped) status.flags.push_back("CLAMPED");
-  if (!tool_) status.flags.push_back("TOOL_LOST");
+  if (last_step_.not_converged) status.flags.push_back("NOT_CONVERGED");
+  if (!tools_.empty() && !has_a_tool()) status.flags.push_back("TOOL_LOST");
   if (time_jumped_) status.flags.push_back("TIME_JUMP");
   time_jumped_ = false;
   status_publisher_.publish(status);

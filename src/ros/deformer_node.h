@@ -37,8 +37,10 @@ class DeformerNode {
   };
 
   void take_mesh(const soft_tissue_sim::TetMesh& message);
-  void take_pose(const geometry_msgs::PoseStamped& pose);
-  void move_to(const geometry_msgs::PoseStamped& pose);
+  void take_pose(std::size_t tool, const geometry_msgs::PoseStamped& pose);
+  void move_to(std::size_t tool, const geometry_msgs::PoseStamped& pose);
+  void lose_tools();
+  bool has_a_tool() const;
   void drop_pose(const std::string& why);
   void watch_tool();
   void publish_cloud();
@@ -50,10 +52,11 @@ class DeformerNode {
   tissue::SceneDescription scene_;
   std::optional<Simulation> simulation_;
 
-  // The newest pose that was used, and when it came by the wall clock.
-  std::optional<tissue::ToolPose> tool_;
+  // For each tool of the scene the newest pose that was used, and when it came by the wall clock.
+  tissue::ToolPoses tools_;
+  std::vector<ros::WallTime> heard_;
   ros::Time stamp_;
-  ros::WallTime heard_;
+  bool stepped_ = false;
   tissue::StepReport last_step_;
   double step_seconds_ = 0.0;
   bool time_jumped_ = false;
@@ -64,7 +67,8 @@ class DeformerNode {
   tf2_ros::Buffer transforms_;
   tf2_ros::TransformListener transform_listener_{transforms_};
   ros::Publisher cloud_publisher_, marker_publisher_, status_publisher_;
-  ros::Subscriber mesh_subscriber_, pose_subscriber_;
+  ros::Subscriber mesh_subscriber_;
+  std::vector<ros::Subscriber> pose_subscribers_;
   std::vector<ros::WallTimer> timers_;
   diagnostic_updater::Updater diagnostics_;
 };

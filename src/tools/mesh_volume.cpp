@@ -1,5 +1,6 @@
 // From a volume file to a mesh file, without ROS.
 #include "mesh_volume_arguments.h"
+#include "program.h"
 #include "statistics_json.h"
 #include "tissue/base/error.h"
 #include "tissue/base/mesh_file.h"
@@ -7,27 +8,9 @@
 #include "tissue/field/read_volume.h"
 #include "tissue/field/triangle_surface.h"
 
-#include <unistd.h>
-
 #include <cstdio>
-#include <fstream>
-#include <iostream>
 
 namespace {
-
-namespace po = boost::program_options;
-using tissue::ErrorCode;
-using tissue::InputError;
-
-// One line that is written again and again, on a terminal only.
-void show_progress(const tissue::Progress& progress) {
-  constexpr int kWidth = 30;
-  const int done = static_cast<int>(progress.fraction * kWidth + 0.5);
-  std::fprintf(stderr, "\r[%s%s] %3.0f %% %-10s %llu tets   ", std::string(done, '#').c_str(),
-               std::string(kWidth - done, ' ').c_str(), 100.0 * progress.fraction, progress.stage,
-               static_cast<unsigned long long>(progress.tetrahedra));
-  if (progress.fraction >= 1.0) std::fprintf(stderr, "\r%70s\r", "");
-}
 
 tissue::ImplicitSurface organ_in(const tissue_tools::MeshVolumeArguments& arguments,
                                  const std::shared_ptr<const tissue::Volume>& volume) {
@@ -38,13 +21,6 @@ tissue::ImplicitSurface organ_in(const tissue_tools::MeshVolumeArguments& argume
   auto mask = std::make_shared<tissue::Volume>(tissue::read_volume(arguments.mask));
   mask->quantity = tissue::Quantity::kLabel;
   return tissue::surface_of_mask(mask);
-}
-
-void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path);
-  file << text << '\n';
-  file.close();
-  if (!file) throw InputError(ErrorCode::kIo, "--stats: '" + path + "' cannot be written");
 }
 
 // What a person wants to know at once; `--stats` has it all.
@@ -93,7 +69,11 @@ void run(const tissue_tools::MeshVolumeArguments& arguments) {
   }
   files.stop();
   tissue::Run watched;
-  if (isatty(STDERR_FILENO) != 0) watched.report = show_progress;
+  watched.report = [](const tissue::Progress& progress) {
+    tissue_tools::show_progress(
+        progress.fraction,
+        std::string(progress.stage) + ", " + std::to_string(progress.tetrahedra) + " tets");
+  };
   tissue::BuiltMesh built = tissue::build_mesh(volume, organ, arguments.mesh, watched);
   files.start("write");
   std::vector<tissue::TetField> further;
@@ -110,7 +90,7 @@ void run(const tissue_tools::MeshVolumeArguments& arguments) {
   statistics.stages.insert(statistics.stages.begin(), files.stages()[0]);
   statistics.stages.push_back(files.stages()[1]);
   if (!arguments.stats.empty()) {
-    write_text(arguments.stats, tissue::to_json(statistics).dump(2));
+    tissue_tools::write_text("--stats", arguments.stats, tissue::to_json(statistics).dump(2));
   }
   print_summary(statistics, arguments.mesh.target_tetrahedra, meshing_seconds);
 }
@@ -118,31 +98,7 @@ void run(const tissue_tools::MeshVolumeArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    const po::options_description options = tissue_tools::mesh_volume_options();
-    po::positional_options_description positions;
-    positions.add("volume", 1);
-    po::variables_map given;
-    // Negative numbers are values, not options.
-    const auto style = po::command_line_style::unix_style ^ po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv)
-                  .options(options)
-                  .positional(positions)
-                  .style(style)
-                  .run(),
-              given);
-    if (given.count("help") != 0) {
-      std::cout << options;
-      return 0;
-    }
-    run(tissue_tools::mesh_volume_arguments(given));
-    return 0;
-  } catch (const std::bad_alloc&) {
-    std::cerr << "mesh_volume: out of memory\n";
-  } catch (const InputError& error) {
-    std::cerr << "mesh_volume: " << name(error.code()) << ": " << error.what() << '\n';
-  } catch (const std::exception& error) {
-    std::cerr << "mesh_volume: " << error.what() << '\n';
-  }
-  return 2;
+  return tissue_tools::run_program(
+      "mesh_volume", tissue_tools::mesh_volume_options(), "volume", argc, argv,
+      [](const auto& given) { run(tissue_tools::mesh_volume_arguments(given)); });
 }

@@ -45,7 +45,8 @@ struct Problem {
                           double tolerance = 1e-10) {
     std::vector<const Energy*> energies = {&energy};
     if (load != nullptr) energies.push_back(load);
-    Equilibrium equilibrium(energies, energy.empty_hessian(), held, direct_solver());
+    Equilibrium equilibrium(energies, energy.empty_hessian(), direct_solver());
+    equilibrium.hold(held);
     Eigen::VectorXd motion = positions - rest_positions(elements);
     for (std::size_t node = 0; node < held.size(); ++node) {
       if (held[node] == 0) motion.segment<3>(static_cast<Eigen::Index>(3 * node)).setZero();
@@ -349,8 +350,8 @@ TEST(Elasticity, T4_T5_T6_AStableBodyComesBackFromBeingFlattenedCollapsedAndTurn
       if (shape == 2) place.z() *= -1.0;
       problem.positions.segment<3>(static_cast<Eigen::Index>(3 * node)) = place;
     }
-    Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), held,
-                            direct_solver());
+    Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), direct_solver());
+    equilibrium.hold(held);
     const double before = equilibrium.energy(problem.positions);
     const EquilibriumReport report = equilibrium.solve(problem.positions, {1e-8, 400});
     EXPECT_TRUE(report.converged) << shape << " " << report.residual;

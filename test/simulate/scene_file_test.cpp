@@ -29,9 +29,9 @@ TEST(SceneFile, ReadsEveryKey) {
   EXPECT_EQ(scene.name, "press");
   EXPECT_EQ(scene.push.range, 0.025);
   EXPECT_EQ(scene.rise_time, 0.1);
-  EXPECT_EQ(scene.tool.name, "stylus");
-  EXPECT_EQ(scene.tool.radius, 0.004);
-  EXPECT_FALSE(scene.tool.grasps);
+  EXPECT_EQ(scene.tools[0].name, "stylus");
+  EXPECT_EQ(scene.tools[0].radius, 0.004);
+  EXPECT_FALSE(scene.tools[0].grasps);
   EXPECT_TRUE(scene.push.density_response);
   EXPECT_EQ(scene.push.reference_density, 80.0);
   EXPECT_EQ(scene.recovery_time.value(), 0.5);
@@ -78,7 +78,8 @@ TEST(SceneFile, SaysLineAndKeyOfWhatItRefuses) {
     EXPECT_EQ(text.substr(0, refused.sentence.size()), refused.sentence) << text;
   }
   EXPECT_EQ(tissue_test::refusal([] { parse_scene("model: jelly"); }),
-            "E_SCENE: scene: line 1, model: 'jelly' is not a model; closed_form is");
+            "E_SCENE: scene: line 1, model: 'jelly' is not a model; these are: closed_form linear "
+            "corotational neo_hookean");
   EXPECT_EQ(tissue_test::refusal([] { parse_scene("{"); }).substr(0, 7), "E_SCENE");
   EXPECT_EQ(tissue_test::refusal([] { parse_scene("- a list"); }).substr(0, 7), "E_SCENE");
   EXPECT_EQ(tissue_test::refusal([] { read_scene("/nowhere.yaml"); }).substr(0, 6), "E_FILE");

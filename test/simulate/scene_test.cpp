@@ -29,13 +29,14 @@ std::shared_ptr<const Body> ball_body(double spacing) {
   return std::make_shared<Body>(body_of(build_mesh(volume, nullptr, options).mesh));
 }
 
-SceneDescription all_effects() {
+SceneDescription with_all_effects() {
   SceneDescription scene;
   scene.push.range = 0.03;
   scene.push.density_response = true;
   scene.recovery_time = 0.2;
   scene.fold_guard = true;
-  scene.tool.radius = 0.002;
+  scene.effects = {Effect::kDensityResponse, Effect::kRecovery, Effect::kFoldGuard};
+  scene.tools[0].radius = 0.002;
   return scene;
 }
 
@@ -47,7 +48,7 @@ ToolPose at(const Vec3& position, std::optional<bool> closed = std::nullopt) {
 
 TEST(Scene, TheTargetFollowsTheToolAndATumourMovesLessThanSoftTissue) {
   const auto body = ball_body(0.006);
-  Scene scene(all_effects(), body);
+  Scene scene(with_all_effects(), body);
   scene.step(at(kTop), 0.0);
   const StepReport report = scene.step(at(kTop - Vec3(0, 0, 0.004)), 0.01);
   EXPECT_FALSE(report.clamped);
@@ -73,7 +74,7 @@ TEST(Scene, TheTargetFollowsTheToolAndATumourMovesLessThanSoftTissue) {
 
 TEST(Scene, ReleaseEndsInTheBitExactRestShape) {
   const auto body = ball_body(0.008);
-  Scene scene(all_effects(), body);
+  Scene scene(with_all_effects(), body);
   scene.step(at(kTop), 0.0);
   scene.step(at(kTop - Vec3(0.001, 0.002, 0.005)), 0.01);
   EXPECT_NE(scene.state().positions, rest_state(*body).positions);
@@ -85,7 +86,7 @@ TEST(Scene, ReleaseEndsInTheBitExactRestShape) {
 }
 
 TEST(Scene, TissueStaysWhereItWasLeftWithoutRecovery) {
-  SceneDescription description = all_effects();
+  SceneDescription description = with_all_effects();
   description.recovery_time.reset();
   Scene scene(description, ball_body(0.008));
   scene.step(at(kTop), 0.0);
@@ -98,7 +99,7 @@ TEST(Scene, TissueStaysWhereItWasLeftWithoutRecovery) {
 }
 
 TEST(Scene, P7_LetsGoBeyondTheRange) {
-  SceneDescription description = all_effects();
+  SceneDescription description = with_all_effects();
   description.push.range = 0.01;
   Scene scene(description, ball_body(0.008));
   scene.step(at(kTop), 0.0);
@@ -110,8 +111,8 @@ TEST(Scene, P7_LetsGoBeyondTheRange) {
 }
 
 TEST(Scene, GraspsOnlyWhenTheJawCloses) {
-  SceneDescription description = all_effects();
-  description.tool.grasps = true;
+  SceneDescription description = with_all_effects();
+  description.tools[0].grasps = true;
   const auto body = ball_body(0.008);
   Scene scene(description, body);
   scene.step(at(kTop, false), 0.0);
@@ -125,7 +126,7 @@ TEST(Scene, GraspsOnlyWhenTheJawCloses) {
 
 TEST(Scene, P8_ATouchWithoutMotionMovesNothing) {
   const auto body = ball_body(0.008);
-  Scene scene(all_effects(), body);
+  Scene scene(with_all_effects(), body);
   for (int i = 0; i < 5; ++i) {
     EXPECT_GT(scene.step(at(kTop), 0.01).moved_vertices, 0u);  // It is held all the same.
   }
@@ -134,7 +135,7 @@ TEST(Scene, P8_ATouchWithoutMotionMovesNothing) {
 
 TEST(Scene, T3_APathThatReturnsToItsStartLeavesNothingBehind) {
   const auto body = ball_body(0.008);
-  Scene scene(all_effects(), body);
+  Scene scene(with_all_effects(), body);
   std::mt19937 random(2);
   std::normal_distribution<> step(0.0, 0.001);
   scene.step(at(kTop), 0.0);
@@ -149,7 +150,7 @@ TEST(Scene, T3_APathThatReturnsToItsStartLeavesNothingBehind) {
 }
 
 TEST(Scene, RiseTimeBringsTheTissueUpSmoothly) {
-  SceneDescription description = all_effects();
+  SceneDescription description = with_all_effects();
   description.rise_time = 1.0;
   const auto body = ball_body(0.008);
   const std::uint32_t target = *SurfaceTouch(*body).target(kTop, 0.002);
@@ -169,7 +170,7 @@ TEST(Scene, EffectsThatAreNotNamedCostNothing) {
   Scene bare(SceneDescription{}, body);
   bare.step(at(kTop), 0.0);
   EXPECT_TRUE(bare.effect_costs().empty());
-  Scene full(all_effects(), body);
+  Scene full(with_all_effects(), body);
   full.step(at(kTop), 0.0);
   ASSERT_EQ(full.effect_costs().size(), 3u);
   for (const EffectCost& cost : full.effect_costs()) {
@@ -178,7 +179,7 @@ TEST(Scene, EffectsThatAreNotNamedCostNothing) {
 }
 
 TEST(Scene, RefusesTimeStepsAndPosesThatAreNone) {
-  Scene scene(all_effects(), ball_body(0.008));
+  Scene scene(with_all_effects(), ball_body(0.008));
   scene.step(at(kTop), 0.0);
   scene.step(at(kTop - Vec3(0, 0, 0.003)), 0.01);
   const std::vector<Vec3> held = scene.state().positions;
@@ -227,7 +228,7 @@ TEST(FoldGuard, T1_NoTetFoldsInAHundredThousandPushesAndOneDoesJustBeyondTheLimi
 }
 
 TEST(FoldGuard, TheSceneClampsAndSaysSo) {
-  SceneDescription description = all_effects();
+  SceneDescription description = with_all_effects();
   const auto body = ball_body(0.008);
   Scene guarded(description, body);
   description.fold_guard = false;

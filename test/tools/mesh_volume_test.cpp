@@ -1,12 +1,8 @@
+#include "support/program.h"
+
 #include <gtest/gtest.h>
 
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
 
 namespace {
@@ -15,26 +11,12 @@ namespace fs = std::filesystem;
 
 const std::string kBrain = std::string(TISSUE_SOURCE_DIR) + "/data/ch2bet.nii.gz";
 
-struct Outcome {
-  int code;
-  std::string output;
-};
+using tissue_test::Outcome;
+using tissue_test::read_json;
+using tissue_test::temporary;
 
 Outcome run(const std::string& arguments) {
-  Outcome outcome{};
-  FILE* pipe = popen((std::string(MESH_VOLUME) + " " + arguments + " 2>&1").c_str(), "r");
-  char buffer[256];
-  while (fgets(buffer, sizeof(buffer), pipe) != nullptr) outcome.output += buffer;
-  outcome.code = WEXITSTATUS(pclose(pipe));
-  return outcome;
-}
-
-std::string temporary(const std::string& name) {
-  return (fs::temp_directory_path() / name).string();
-}
-
-nlohmann::json read_json(const std::string& path) {
-  return nlohmann::json::parse(std::ifstream(path));
+  return tissue_test::run_program(MESH_VOLUME, arguments);
 }
 
 TEST(MeshVolume, WritesAMeshAndItsFigures) {

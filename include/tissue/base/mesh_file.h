@@ -16,8 +16,10 @@ struct TetField {
 /// vertex; absent without a hierarchy), cell data `level` and `density`, then `further`, which
 /// replaces a field of the same name. The last line is a hash of all bytes before it. The file
 /// appears when it is complete. Throws InputError E_IO if it cannot be written.
+/// Where given, `displacements` of the vertices are point data `displacement`.
 void write_mesh(const TetMesh& mesh, const std::string& path,
-                const std::vector<TetField>& further = {});
+                const std::vector<TetField>& further = {},
+                const std::vector<Vec3>& displacements = {});
 
 /// Reads a VTU file of tets. One that write_mesh() made is not parsed before its hash has been
 /// checked, and comes back with the uuid that it had. One from elsewhere, unless `only_own`, needs

@@ -27,10 +27,13 @@ struct EquilibriumReport {
 /// Newton's method with a line search.
 class Equilibrium {
  public:
-  /// `energies` must outlive this; `pattern` has a block wherever one of them adds one. Throws
-  /// InputError E_PARAM if no node is free.
+  /// `energies` must outlive this; `pattern` has a block wherever one of them adds one. Where all
+  /// of them are quadratic the Hessian is factorised once for the same fixed nodes.
   Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
-              std::vector<std::uint8_t> fixed_nodes, std::unique_ptr<LinearSolver> solver);
+              std::unique_ptr<LinearSolver> solver, bool quadratic = false);
+
+  /// Which nodes do not move by themselves. Throws InputError E_PARAM if none is free.
+  void hold(const std::vector<std::uint8_t>& fixed_nodes);
 
   /// From `positions`, in which fixed nodes are where they are to be, to the equilibrium. Where it
   /// is not found `positions` holds the best finite state that was.
@@ -44,6 +47,7 @@ class Equilibrium {
   /// dE/dx of all nodes; at fixed ones it is the force that holds them [N].
   Eigen::VectorXd gradient(const Eigen::VectorXd& positions) const;
   const char* solver_name() const { return solver_->name(); }
+  std::size_t bytes() const { return hessian_.bytes(); }
 
  private:
   bool factorise(const Eigen::VectorXd& positions);
@@ -60,6 +64,8 @@ class Equilibrium {
   int free_count_ = 0;
   double largest_stiffness_ = 0.0;
   std::unique_ptr<LinearSolver> solver_;
+  bool quadratic_;
+  bool is_factorised_ = false;
 };
 
 }  // namespace tissue

@@ -1,43 +1,21 @@
 #pragma once
 
-#include "tissue/simulate/push_field.h"
+#include "tissue/simulate/scene_description.h"
 
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace tissue {
-
-/// A tool as a scene names it.
-struct ToolDescription {
-  std::string name = "tool";
-  /// Radius of the tool's sphere [m].
-  double radius = 0.004;
-  /// `press` takes hold of the tissue at the first touch; `grasp` when the jaw closes on it.
-  bool grasps = false;
-};
-
-/// A scene file, checked. The only place where a scene's defaults stand.
-struct SceneDescription {
-  std::string name = "scene";
-  std::string model = "closed_form";
-  PushOptions push{0.03, false, 0.0, false};
-  /// Time over which the tissue follows the tool after it was taken [s]; 0: at once.
-  double rise_time = 0.0;
-  ToolDescription tool;
-  /// Effect `recovery`: seconds until released tissue is back at rest. Without it, it stays.
-  std::optional<double> recovery_time;
-  /// Effect `fold_guard`: no tet is ever folded; the target then stays behind the tool.
-  bool fold_guard = false;
-};
 
 /// A tool at one instant.
 struct ToolPose {
   Vec3 position = Vec3::Zero();
   /// Whether the jaw is closed; a tool without a jaw takes hold at the first touch in either mode.
-  std::optional<bool> closed;
+  std::optional<bool> closed = {};
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
+
+/// One entry for each tool of the scene, in its order; without a pose a tool is lost.
+using ToolPoses = std::vector<std::optional<ToolPose>>;
 
 /// What an effect cost so far.
 struct EffectCost {
@@ -51,32 +29,59 @@ struct StepReport {
   /// The push was held back so that no tet folds.
   bool clamped = false;
   bool tool_lost = false;
+  /// No equilibrium was found: the state is the last valid one.
+  bool not_converged = false;
   std::size_t moved_vertices = 0;
+  /// Of the solver; 0 and 0 for closed_form.
+  int iterations = 0;
+  double residual = 0.0;
+  /// Of the state [J]; nothing for closed_form.
+  std::optional<double> energy;
 };
 
-/// A body that moves under one tool by the closed form of the paper. The shape is a function of the
-/// tool's path since it took hold: at rest, held, or on the way back to rest.
+/// How a tet is strained: the von Mises stress of Cauchy's stress [Pa] and the largest principal
+/// stretch less one, means over its volume.
+struct TetStrain {
+  double von_mises = 0.0;
+  double largest_strain = 0.0;
+};
+
+/// A body that moves as a scene says: one model and the effects that the scene names.
 class Scene {
  public:
-  /// Throws InputError as body_of does.
-  Scene(const SceneDescription& description, std::shared_ptr<const Body> body);
+  /// Throws InputError E_SCENE for an anchor that holds nothing, E_UNCONSTRAINED for a solid that
+  /// is not held, E_PARAM where the material asks for what the body does not have.
+  Scene(SceneDescription description, std::shared_ptr<const Body> body, int threads = 1);
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// Advances by `dt` seconds to the tool's pose; without a pose the tool is lost. Throws
-  /// InputError E_DT unless 0 <= dt is finite and E_NONFINITE for a position that is not; the state
-  /// is then as before.
-  StepReport step(const std::optional<ToolPose>& tool, double dt);
+  /// Advances by `dt` seconds to the tools' poses. Throws InputError E_DT unless 0 <= dt is finite,
+  /// E_NONFINITE for a pose that is not, E_PARAM for a wrong number of poses; the state is then as
+  /// before.
+  StepReport step(const ToolPoses& tools, double dt);
+  /// For a scene of one tool.
+  StepReport step(const std::optional<ToolPose>& tool, double dt) {
+    return step(ToolPoses{tool}, dt);
+  }
   /// Back to rest at once.
   void reset();
 
+  const SceneDescription& description() const;
   const State& state() const;
   const Body& body() const;
-  /// True while something moves without the tool moving.
+  /// True while something moves without a tool moving.
   bool recovering() const;
   /// One entry for each effect that the scene names.
   const std::vector<EffectCost>& effect_costs() const;
+  /// Where the probes are now [m]; nothing for one that no tissue answers to.
+  std::map<std::string, std::optional<Vec3>> probes() const;
+  /// Force of the tissue on each tool [N]; nothing for a model that knows none.
+  std::vector<std::optional<Vec3>> tool_forces() const;
+  /// Force of the tissue on all that anchors hold [N]; nothing for a model that knows none.
+  std::optional<Vec3> anchor_force() const;
+  /// For each tet; empty for a model that knows no stress.
+  std::vector<TetStrain> strains() const;
 
  private:
   class Implementation;

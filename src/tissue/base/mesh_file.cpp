@@ -56,6 +56,20 @@ void add_parents(const TetMesh& mesh, vtkPointData* data) {
   data->AddArray(array);
 }
 
+void add_displacements(const std::vector<Vec3>& displacements, vtkPointData* data) {
+  vtkNew<vtkFloatArray> array;
+  array->SetName("displacement");
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(static_cast<vtkIdType>(displacements.size()));
+  for (std::size_t v = 0; v < displacements.size(); ++v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      array->SetTypedComponent(static_cast<vtkIdType>(v), axis,
+                               static_cast<float>(displacements[v][axis]));
+    }
+  }
+  data->AddArray(array);
+}
+
 vtkNew<vtkUnstructuredGrid> grid_of(const TetMesh& mesh) {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPoints> points;
@@ -180,11 +194,12 @@ TetMesh mesh_of(vtkUnstructuredGrid* grid) {
 
 }  // namespace
 
-void write_mesh(const TetMesh& mesh, const std::string& path,
-                const std::vector<TetField>& further) {
+void write_mesh(const TetMesh& mesh, const std::string& path, const std::vector<TetField>& further,
+                const std::vector<Vec3>& displacements) {
   const vtkNew<vtkUnstructuredGrid> grid = grid_of(mesh);
   add_field<vtkFloatArray>(grid->GetPointData(), "density", mesh.densities);
   if (!mesh.parents.empty()) add_parents(mesh, grid->GetPointData());
+  if (!displacements.empty()) add_displacements(displacements, grid->GetPointData());
   add_field<vtkUnsignedCharArray>(grid->GetCellData(), "level", mesh.levels);
   add_field<vtkFloatArray>(grid->GetCellData(), "density", mesh.tet_densities);
   for (const TetField& field : further) {

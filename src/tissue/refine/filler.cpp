@@ -164,16 +164,27 @@ class Filler {
   FaceTables face_tables_;
 };
 
+// Fresh memory takes its time, too much to be asked only afterwards whether to go on.
+template <class T>
+void resize(std::vector<T>& values, std::size_t size, const Run& run) {
+  constexpr std::size_t kStep = 1 << 20;
+  values.reserve(size);
+  while (values.size() < size) {
+    run.go_on();
+    values.resize(std::min(size, values.size() + kStep));
+  }
+}
+
 }  // namespace
 
 RefinedMesh fill_mesh(const RefinableLattice& lattice, const RefinementPlan& plan,
                       const VertexBlocks& blocks, const Run& run) {
   RefinedMesh mesh;
-  mesh.vertices.resize(blocks.vertex_count);
-  mesh.parents.resize(blocks.vertex_count - lattice.mesh.vertices.size());
-  mesh.tets.resize(blocks.first_tet.back());
-  mesh.levels.resize(blocks.first_tet.back());
-  mesh.surface.resize(blocks.first_triangle.back());
+  resize(mesh.vertices, blocks.vertex_count, run);
+  resize(mesh.parents, blocks.vertex_count - lattice.mesh.vertices.size(), run);
+  resize(mesh.tets, blocks.first_tet.back(), run);
+  resize(mesh.levels, blocks.first_tet.back(), run);
+  resize(mesh.surface, blocks.first_triangle.back(), run);
 
   Filler filler(lattice, plan, blocks, mesh);
   filler.fill_lattice_vertices();

@@ -18,10 +18,18 @@ double extent(const Eigen::VectorXd& positions) {
 }  // namespace
 
 Equilibrium::Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
-                         std::vector<std::uint8_t> fixed_nodes,
-                         std::unique_ptr<LinearSolver> solver)
-    : energies_(std::move(energies)), hessian_(std::move(pattern)), solver_(std::move(solver)) {
-  number_.reserve(3 * fixed_nodes.size());
+                         std::unique_ptr<LinearSolver> solver, bool quadratic)
+    : energies_(std::move(energies)),
+      hessian_(std::move(pattern)),
+      solver_(std::move(solver)),
+      quadratic_(quadratic) {
+  hold(std::vector<std::uint8_t>(hessian_.node_count(), 0));
+}
+
+void Equilibrium::hold(const std::vector<std::uint8_t>& fixed_nodes) {
+  number_.clear();
+  free_count_ = 0;
+  is_factorised_ = false;
   for (const std::uint8_t fixed : fixed_nodes) {
     for (int axis = 0; axis < 3; ++axis) number_.push_back(fixed != 0 ? -1 : free_count_++);
   }
@@ -58,20 +66,21 @@ double Equilibrium::fixed_norm(const Eigen::VectorXd& gradient) const {
 }
 
 bool Equilibrium::factorise(const Eigen::VectorXd& positions) {
+  if (quadratic_ && is_factorised_) return true;
   hessian_.set_zero();
   for (const Energy* energy : energies_) energy->add_hessian(positions, hessian_);
-  Eigen::SparseMatrix<double> lower = hessian_.lower_triangle(number_, free_count_);
+  const Eigen::SparseMatrix<double> lower = hessian_.lower_triangle(number_, free_count_);
   const Eigen::VectorXd diagonal = lower.diagonal();
   largest_stiffness_ = diagonal.maxCoeff();
   if (!std::isfinite(diagonal.sum())) return false;
-  if (solver_->factorise(lower)) return true;
+  is_factorised_ = solver_->factorise(lower);
   // Flat directions of a convex neighbour of the Hessian: held by a little, then by more.
-  for (double shift = 1e-10; shift < 1.0; shift *= 100.0) {
+  for (double shift = 1e-10; !is_factorised_ && shift < 1.0; shift *= 100.0) {
     Eigen::SparseMatrix<double> shifted = lower;
     shifted.diagonal() = diagonal.array() + shift * largest_stiffness_;
-    if (solver_->factorise(shifted)) return true;
+    is_factorised_ = solver_->factorise(shifted);
   }
-  return false;
+  return is_factorised_;
 }
 
 Eigen::VectorXd Equilibrium::step_for(const Eigen::VectorXd& gradient) const {

@@ -1,7 +1,8 @@
 #include "tissue/simulate/scene_file.h"
 
-#include "yaml_reader.h"
+#include "anchor_reader.h"
 
+#include <algorithm>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -11,61 +12,67 @@ namespace {
 
 constexpr double kHuge = 1e12;
 
-void check_material(const YamlReader& material, bool density_response) {
-  material.require_keys({"young", "poisson", "mass_density"});
-  if (material.has("young")) {
-    double previous = -1.0;
-    for (const YamlReader& row : material.at("young").entries()) {
+Material material_from(const YamlReader& reader, bool by_density) {
+  reader.require_keys({"young", "poisson", "mass_density"});
+  Material material;
+  if (reader.has("young")) {
+    const YamlReader young = reader.at("young");
+    material.young.clear();
+    for (const YamlReader& row : young.entries()) {
       const std::vector<YamlReader> pair = row.entries();
       if (pair.size() != 2) row.refuse(ErrorCode::kScene, "is not a pair [density, Pa]");
       const double density = pair[0].number(0.0, kHuge);
-      if (!(density > previous)) pair[0].refuse(ErrorCode::kParam, "densities do not rise");
-      previous = density;
-      pair[1].number(0.0, kHuge, true);
+      if (!material.young.empty() && !(density > material.young.back()[0])) {
+        pair[0].refuse(ErrorCode::kParam, "densities do not rise");
+      }
+      material.young.push_back({density, pair[1].number(0.0, kHuge, true)});
     }
-    if (previous < 0.0) material.at("young").refuse(ErrorCode::kScene, "has no rows");
-    if (!density_response && material.at("young").entries().size() > 1) {
-      material.at("young").refuse(ErrorCode::kScene,
-                                  "has several rows, which needs the effect density_response");
+    if (material.young.empty()) young.refuse(ErrorCode::kScene, "has no rows");
+    if (!by_density && material.young.size() > 1) {
+      young.refuse(ErrorCode::kScene, "has several rows, which needs the effect density_response");
     }
   }
-  if (material.has("poisson")) material.at("poisson").number(-1.0, 0.5, true);
-  if (material.has("mass_density")) material.at("mass_density").number(0.0, kHuge, true);
-}
-
-void check_anchors(const YamlReader& anchors) {
-  for (const YamlReader& anchor : anchors.entries()) {
-    anchor.require_keys({"plane", "box", "sphere", "label", "vertices"});
-    if (anchor.members().size() != 1) anchor.refuse(ErrorCode::kScene, "is not one anchor");
+  if (reader.has("poisson")) material.poisson = reader.at("poisson").number(-1.0, 0.5, true);
+  if (reader.has("mass_density")) {
+    material.mass_density = reader.at("mass_density").number(0.0, kHuge, true);
   }
+  return material;
 }
 
-void check_probes(const YamlReader& probes) {
-  for (const YamlReader& probe : probes.members()) {
+Vec3 place_from(const YamlReader& reader, const char* what) {
+  const std::vector<YamlReader> entries = reader.entries();
+  if (entries.size() != 3) reader.refuse(ErrorCode::kScene, std::string("is not ") + what);
+  Vec3 place;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    place[static_cast<Eigen::Index>(axis)] = entries[axis].number(-kHuge, kHuge);
+  }
+  return place;
+}
+
+std::map<std::string, Probe> probes_from(const YamlReader& reader) {
+  std::map<std::string, Probe> probes;
+  for (const YamlReader& probe : reader.members()) {
     if (probe.is_list()) {
-      const std::vector<YamlReader> place = probe.entries();
-      if (place.size() != 3) probe.refuse(ErrorCode::kScene, "is not a place [x, y, z]");
-      for (const YamlReader& coordinate : place) coordinate.number(-kHuge, kHuge);
+      probes[probe.key()] = place_from(probe, "a place [x, y, z]");
     } else {
       probe.require_keys({"density_above"});
-      probe.at("density_above").number(0.0, kHuge);
+      probes[probe.key()] = DensityProbe{probe.at("density_above").number(0.0, kHuge)};
     }
   }
+  return probes;
 }
 
-void check_solver(const YamlReader& solver) {
-  solver.require_keys({"tolerance", "max_iterations"});
-  if (solver.has("tolerance")) solver.at("tolerance").number(0.0, 1.0, true);
-  if (solver.has("max_iterations")) solver.at("max_iterations").number(1.0, 1e9);
-}
-
-ToolDescription tool_from(const YamlReader& tools) {
-  const std::vector<YamlReader> entries = tools.entries();
-  if (entries.size() != 1) {
-    tools.refuse(ErrorCode::kScene,
-                 "model closed_form moves under one tool, not " + std::to_string(entries.size()));
+EquilibriumOptions solver_from(const YamlReader& reader) {
+  reader.require_keys({"tolerance", "max_iterations"});
+  EquilibriumOptions options;
+  if (reader.has("tolerance")) options.tolerance = reader.at("tolerance").number(0.0, 1.0, true);
+  if (reader.has("max_iterations")) {
+    options.max_iterations = static_cast<int>(reader.at("max_iterations").number(1.0, 1e9));
   }
-  const YamlReader& entry = entries[0];
+  return options;
+}
+
+ToolDescription tool_from(const YamlReader& entry) {
   entry.require_keys({"name", "shape", "mode"});
   ToolDescription tool;
   tool.name = entry.at("name").word();
@@ -83,6 +90,28 @@ ToolDescription tool_from(const YamlReader& tools) {
   return tool;
 }
 
+std::vector<ToolDescription> tools_from(const YamlReader& reader, Model model) {
+  std::vector<ToolDescription> tools;
+  for (const YamlReader& entry : reader.entries()) {
+    tools.push_back(tool_from(entry));
+    for (std::size_t i = 0; i + 1 < tools.size(); ++i) {
+      if (tools[i].name == tools.back().name) {
+        entry.refuse(ErrorCode::kScene, "is a second tool '" + tools[i].name + "'");
+      }
+    }
+    if (model != Model::kClosedForm && !tools.back().grasps) {
+      entry.refuse(ErrorCode::kScene, std::string("a tool that presses needs the effect contact; "
+                                                  "without it, model ") +
+                                          name(model) + " moves under tools of mode grasp");
+    }
+  }
+  if (model == Model::kClosedForm && tools.size() != 1) {
+    reader.refuse(ErrorCode::kScene,
+                  "model closed_form moves under one tool, not " + std::to_string(tools.size()));
+  }
+  return tools;
+}
+
 // An effect is a word, or a map from the word to its parameters.
 void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::string>& seen) {
   const bool bare = entry.is_word();
@@ -91,24 +120,54 @@ void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::
   }
   const std::string effect = bare ? entry.word() : entry.members()[0].key();
   if (!seen.insert(effect).second) entry.refuse(ErrorCode::kScene, "names " + effect + " twice");
-  const auto parameter = [&](const char* key, double fallback, double highest) {
-    if (bare) return fallback;
-    const YamlReader parameters = entry.members()[0];
-    parameters.require_keys({key});
-    return parameters.has(key) ? parameters.at(key).number(0.0, highest, true) : fallback;
-  };
-  if (effect == "density_response") {
-    scene.push.density_response = true;
-    scene.push.reference_density = parameter("reference", 0.0, kHuge);
-  } else if (effect == "recovery") {
-    scene.recovery_time = parameter("time", 0.2, 3600.0);
-  } else if (effect == "fold_guard") {
-    if (!bare) entry.members()[0].require_keys({});
-    scene.fold_guard = true;
-  } else {
-    entry.refuse(ErrorCode::kScene, "'" + effect + "' is not an effect of model " + scene.model +
-                                        ", which knows density_response recovery fold_guard");
+  const auto known = std::find_if(all_effects().begin(), all_effects().end(),
+                                  [&](Effect one) { return effect == name(one); });
+  if (known == all_effects().end() || !can_have(scene.model, *known)) {
+    std::string list;
+    for (const Effect one : all_effects()) {
+      if (can_have(scene.model, one)) list += std::string(" ") + name(one);
+    }
+    entry.refuse(ErrorCode::kScene, "'" + effect + "' is not an effect of model " +
+                                        name(scene.model) + ", which knows" + list);
   }
+  scene.effects.push_back(*known);
+  const auto parameters = [&](std::initializer_list<const char*> keys) {
+    if (!bare) entry.members()[0].require_keys(keys);
+  };
+  const auto parameter = [&](const char* key, double fallback, double highest) {
+    parameters({key});
+    if (bare || !entry.members()[0].has(key)) return fallback;
+    return entry.members()[0].at(key).number(0.0, highest, true);
+  };
+  switch (*known) {
+    case Effect::kDensityResponse:
+      scene.push.density_response = true;
+      if (scene.model == Model::kClosedForm) {
+        scene.push.reference_density = parameter("reference", 0.0, kHuge);
+      } else {
+        parameters({});
+      }
+      break;
+    case Effect::kRecovery: scene.recovery_time = parameter("time", 0.2, 3600.0); break;
+    case Effect::kFoldGuard:
+      parameters({});
+      scene.fold_guard = true;
+      break;
+    case Effect::kGravity:
+      parameters({"vector"});
+      if (!bare && entry.members()[0].has("vector")) {
+        scene.gravity = place_from(entry.members()[0].at("vector"), "a vector [x, y, z]");
+      }
+  }
+}
+
+Model model_from(const YamlReader& reader) {
+  std::string list;
+  for (const Model model : all_models()) {
+    if (reader.word() == name(model)) return model;
+    list += std::string(list.empty() ? "" : " ") + name(model);
+  }
+  reader.refuse(ErrorCode::kScene, "'" + reader.word() + "' is not a model; these are: " + list);
 }
 
 SceneDescription scene_from(const YamlReader& file) {
@@ -116,29 +175,29 @@ SceneDescription scene_from(const YamlReader& file) {
                      "anchors", "tools", "probes", "effects", "solver"});
   SceneDescription scene;
   if (file.has("name")) scene.name = file.at("name").word();
-  scene.model = file.at("model").word();
-  if (scene.model != "closed_form") {
-    file.at("model").refuse(ErrorCode::kScene,
-                            "'" + scene.model + "' is not a model; closed_form is");
-  }
+  scene.model = model_from(file.at("model"));
   if (file.has("element_order")) {
     const double order = file.at("element_order").number(1.0, 2.0);
     if (order != 1.0 && order != 2.0) {
       file.at("element_order").refuse(ErrorCode::kParam, "is neither 1 nor 2");
     }
+    scene.element_order = static_cast<int>(order);
   }
   if (file.has("range")) scene.push.range = file.at("range").number(0.0, 10.0, true);
   if (file.has("literal")) scene.push.literal = file.at("literal").flag();
   if (file.has("rise_time")) scene.rise_time = file.at("rise_time").number(0.0, 3600.0);
-  if (file.has("anchors")) check_anchors(file.at("anchors"));
-  if (file.has("tools")) scene.tool = tool_from(file.at("tools"));
-  if (file.has("probes")) check_probes(file.at("probes"));
-  if (file.has("solver")) check_solver(file.at("solver"));
+  if (file.has("anchors")) scene.anchors = anchors_from(file.at("anchors"));
+  if (scene.model != Model::kClosedForm) scene.tools.clear();
+  if (file.has("tools")) scene.tools = tools_from(file.at("tools"), scene.model);
+  if (file.has("probes")) scene.probes = probes_from(file.at("probes"));
+  if (file.has("solver")) scene.solver = solver_from(file.at("solver"));
   if (file.has("effects")) {
     std::set<std::string> seen;
     for (const YamlReader& effect : file.at("effects").entries()) add_effect(effect, scene, seen);
   }
-  if (file.has("material")) check_material(file.at("material"), scene.push.density_response);
+  if (file.has("material")) {
+    scene.material = material_from(file.at("material"), scene.has(Effect::kDensityResponse));
+  }
   return scene;
 }
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "tissue/simulate/body.h"
+
+#include <array>
+#include <optional>
+#include <variant>
+#include <vector>
+
+namespace tissue {
+
+/// A coordinate [m], or a fraction of the way across the body's bounding box.
+struct Coordinate {
+  double value = 0.0;
+  bool is_fraction = false;
+  double within(double low, double high) const {
+    return is_fraction ? low + value * (high - low) : value;
+  }
+};
+using CoordinateTriple = std::array<Coordinate, 3>;
+
+/// What is on one side of a plane across an axis.
+struct PlaneAnchor {
+  int axis = 2;
+  std::optional<Coordinate> below, above;
+};
+struct BoxAnchor {
+  CoordinateTriple low, high;
+};
+/// A fraction as radius is one of the bounding box's diagonal.
+struct SphereAnchor {
+  CoordinateTriple centre;
+  Coordinate radius;
+};
+/// Vertices of this density: of one label of a labelled volume.
+struct LabelAnchor {
+  double density = 0.0;
+};
+struct VertexAnchor {
+  std::vector<std::uint32_t> vertices;
+};
+/// Part of a body that does not move.
+using Anchor = std::variant<PlaneAnchor, BoxAnchor, SphereAnchor, LabelAnchor, VertexAnchor>;
+
+/// For each vertex whether one of the anchors holds it. Throws InputError E_SCENE for an anchor
+/// that holds none.
+std::vector<std::uint8_t> anchored_vertices(const Body& body, const std::vector<Anchor>& anchors);
+
+/// Throws InputError E_UNCONSTRAINED unless every connected part of the body has three held
+/// vertices that do not lie on a line: without them it has no equilibrium of its own. The sentence
+/// lists the parts.
+void require_held(const Body& body, const std::vector<std::uint8_t>& held);
+
+}  // namespace tissue

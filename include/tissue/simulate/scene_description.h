@@ -1,0 +1,74 @@
+#pragma once
+
+#include "tissue/simulate/anchors.h"
+#include "tissue/simulate/equilibrium.h"
+#include "tissue/simulate/material.h"
+#include "tissue/simulate/push_field.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tissue {
+
+/// What moves a body: the paper's formula, or tissue as a solid.
+enum class Model { kClosedForm, kLinear, kCorotational, kNeoHookean };
+
+/// What a scene may add to a model.
+enum class Effect { kDensityResponse, kRecovery, kFoldGuard, kGravity };
+
+const char* name(Model model);
+const char* name(Effect effect);
+const std::vector<Model>& all_models();
+const std::vector<Effect>& all_effects();
+/// Whether a model can have an effect.
+bool can_have(Model model, Effect effect);
+/// Effects by models as a table in Markdown, for the README.
+std::string effects_table();
+
+/// A tool as a scene names it.
+struct ToolDescription {
+  std::string name = "tool";
+  /// Radius of the tool's sphere [m].
+  double radius = 0.004;
+  /// `press` takes hold of the tissue at the first touch; `grasp` when the jaw closes on it.
+  bool grasps = false;
+};
+
+/// Something to report: the centroid of all tissue denser than a value, or a place in the tissue.
+struct DensityProbe {
+  double above = 0.0;
+};
+using Probe = std::variant<DensityProbe, Vec3>;
+
+/// A scene file, checked. The only place where a scene's defaults stand.
+struct SceneDescription {
+  std::string name = "scene";
+  Model model = Model::kClosedForm;
+  std::vector<ToolDescription> tools = {ToolDescription{}};
+  std::map<std::string, Probe> probes;
+  /// One cost is kept for each.
+  std::vector<Effect> effects;
+  bool has(Effect effect) const;
+
+  /// For closed_form.
+  PushOptions push{0.03, false, 0.0, false};
+  /// Time over which the tissue follows the tool after it was taken [s]; 0: at once.
+  double rise_time = 0.0;
+  /// Effect `recovery`: seconds until released tissue is back at rest. Without it, it stays.
+  std::optional<double> recovery_time;
+  /// Effect `fold_guard`: no tet is ever folded; the target then stays behind the tool.
+  bool fold_guard = false;
+
+  /// For tissue as a solid.
+  int element_order = 1;
+  std::vector<Anchor> anchors;
+  Material material;
+  /// Effect `gravity` [m/s²].
+  Vec3 gravity = {0.0, 0.0, -9.81};
+  EquilibriumOptions solver;
+};
+
+}  // namespace tissue

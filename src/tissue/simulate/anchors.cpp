@@ -1,0 +1,168 @@
+#include "tissue/simulate/anchors.h"
+
+#include "tissue/base/error.h"
+
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace tissue {
+namespace {
+
+struct Bounds {
+  Vec3 low, high;
+  explicit Bounds(const Body& body)
+      : low(body.rest.front().cast<double>()), high(body.rest.front().cast<double>()) {
+    for (const Vec3f& place : body.rest) {
+      low = low.cwiseMin(place.cast<double>());
+      high = high.cwiseMax(place.cast<double>());
+    }
+  }
+  Vec3 at(const CoordinateTriple& triple) const {
+    Vec3 result;
+    for (int axis = 0; axis < 3; ++axis) {
+      result[axis] = triple[static_cast<std::size_t>(axis)].within(low[axis], high[axis]);
+    }
+    return result;
+  }
+};
+
+// Tells for each anchor which vertices it holds.
+class Holds {
+ public:
+  Holds(const Body& body, std::vector<std::uint8_t>& held)
+      : body_(body), bounds_(body), held_(held) {}
+
+  std::size_t operator()(const PlaneAnchor& anchor) {
+    const double low = bounds_.low[anchor.axis], high = bounds_.high[anchor.axis];
+    return hold_where([&](std::size_t v) {
+      const double place = body_.rest[v][anchor.axis];
+      return (anchor.below && place < anchor.below->within(low, high)) ||
+             (anchor.above && place > anchor.above->within(low, high));
+    });
+  }
+  std::size_t operator()(const BoxAnchor& anchor) {
+    const Vec3 low = bounds_.at(anchor.low), high = bounds_.at(anchor.high);
+    return hold_where([&](std::size_t v) {
+      const Vec3 place = body_.rest[v].cast<double>();
+      return (place.array() >= low.array()).all() && (place.array() <= high.array()).all();
+    });
+  }
+  std::size_t operator()(const SphereAnchor& anchor) {
+    const Vec3 centre = bounds_.at(anchor.centre);
+    const double radius = anchor.radius.within(0.0, (bounds_.high - bounds_.low).norm());
+    return hold_where(
+        [&](std::size_t v) { return (body_.rest[v].cast<double>() - centre).norm() <= radius; });
+  }
+  std::size_t operator()(const LabelAnchor& anchor) {
+    return hold_where(
+        [&](std::size_t v) { return std::abs(body_.densities[v] - anchor.density) < 0.5; });
+  }
+  std::size_t operator()(const VertexAnchor& anchor) {
+    for (const std::uint32_t v : anchor.vertices) {
+      if (v >= held_.size()) {
+        throw InputError(ErrorCode::kScene, "anchors: vertex " + std::to_string(v) +
+                                                " is not one of the mesh's " +
+                                                std::to_string(held_.size()));
+      }
+      held_[v] = 1;
+    }
+    return anchor.vertices.size();
+  }
+
+ private:
+  std::size_t hold_where(const std::function<bool(std::size_t)>& holds) {
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < held_.size(); ++v) {
+      if (!holds(v)) continue;
+      held_[v] = 1;
+      ++count;
+    }
+    return count;
+  }
+
+  const Body& body_;
+  Bounds bounds_;
+  std::vector<std::uint8_t>& held_;
+};
+
+// Numbers the connected parts of a body, each by its lowest vertex.
+std::vector<std::uint32_t> parts_of(const Body& body) {
+  std::vector<std::uint32_t> parent(body.rest.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Tet& tet : body.tets) {
+    for (int k = 1; k < 4; ++k) {
+      const std::uint32_t a = root(tet[0]), b = root(tet[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
+  return parent;
+}
+
+// How many independent directions the held vertices of a part span: 2 hold it.
+class Span {
+ public:
+  void add(const Vec3& place, double size) {
+    if (!first_) {
+      first_ = place;
+    } else if (!direction_) {
+      if ((place - *first_).norm() > kLeast * size) direction_ = (place - *first_).normalized();
+    } else if (!holds_) {
+      holds_ = (place - *first_).cross(*direction_).norm() > kLeast * size;
+    }
+  }
+  bool holds() const { return holds_; }
+
+ private:
+  static constexpr double kLeast = 1e-6;
+  std::optional<Vec3> first_, direction_;
+  bool holds_ = false;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> anchored_vertices(const Body& body, const std::vector<Anchor>& anchors) {
+  std::vector<std::uint8_t> held(body.rest.size(), 0);
+  Holds holds(body, held);
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    if (std::visit(holds, anchors[i]) == 0) {
+      throw InputError(ErrorCode::kScene,
+                       "anchors[" + std::to_string(i) + "]: holds no vertex of the mesh");
+    }
+  }
+  return held;
+}
+
+void require_held(const Body& body, const std::vector<std::uint8_t>& held) {
+  const std::vector<std::uint32_t> parts = parts_of(body);
+  const Bounds bounds(body);
+  const double size = (bounds.high - bounds.low).norm();
+  std::vector<Span> spans(body.rest.size());
+  std::vector<std::size_t> vertices(body.rest.size(), 0);
+  for (std::size_t v = 0; v < parts.size(); ++v) {
+    ++vertices[parts[v]];
+    if (held[v] != 0) spans[parts[v]].add(body.rest[v].cast<double>(), size);
+  }
+  std::string list;
+  std::size_t loose = 0;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    // A vertex of no tet is no part.
+    if (parts[part] != part || vertices[part] < 4 || spans[part].holds()) continue;
+    if (++loose > 3) continue;
+    list += (list.empty() ? "" : ", ") + std::to_string(vertices[part]) +
+            " vertices around vertex " + std::to_string(part);
+  }
+  if (loose == 0) return;
+  throw InputError(ErrorCode::kUnconstrained,
+                   "anchors: " + std::to_string(loose) +
+                       " parts of the mesh are not held by three vertices that do not lie on a "
+                       "line: " +
+                       list + (loose > 3 ? ", …" : ""));
+}
+
+}  // namespace tissue

@@ -1,0 +1,28 @@
+#include "grip.h"
+
+namespace tissue {
+
+bool Grip::update(const std::optional<ToolPose>& pose, const ToolDescription& tool,
+                  const std::vector<Vec3>& vertices_now, const std::vector<std::uint8_t>& taken) {
+  const bool closed = pose && pose->closed.value_or(true);
+  const bool just_closed = closed && !was_closed_;
+  was_closed_ = closed;
+  if (!closed) {
+    const bool held_something = !vertices_.empty();
+    vertices_.clear();
+    offsets_.clear();
+    return held_something;
+  }
+  // A jaw that was closed all along does not take hold of what it passes.
+  if (!vertices_.empty() || (pose->closed && !just_closed)) return false;
+  const Eigen::Quaterniond into_tool = pose->orientation.normalized().conjugate();
+  for (std::uint32_t v = 0; v < vertices_now.size(); ++v) {
+    const Vec3 offset = vertices_now[v] - pose->position;
+    if (taken[v] != 0 || offset.norm() > tool.radius) continue;
+    vertices_.push_back(v);
+    offsets_.push_back(into_tool * offset);
+  }
+  return !vertices_.empty();
+}
+
+}  // namespace tissue

@@ -1,0 +1,97 @@
+#include "pose_path.h"
+
+#include "tissue/base/error.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace tissue_tools {
+namespace {
+
+using tissue::ErrorCode;
+using tissue::InputError;
+
+class Line {
+ public:
+  Line(const std::string& path, int number) : place_(path + ", line " + std::to_string(number)) {}
+
+  [[noreturn]] void refuse(ErrorCode code, const std::string& what) const {
+    throw InputError(code, "--path: " + place_ + ": " + what);
+  }
+
+  std::vector<double> numbers(const std::string& text) const {
+    std::vector<double> result;
+    std::stringstream stream(text);
+    std::string word;
+    while (std::getline(stream, word, ',')) {
+      char* end = nullptr;
+      const double value = std::strtod(word.c_str(), &end);
+      while (*end == ' ' || *end == '\r') ++end;
+      if (word.empty() || *end != '\0') refuse(ErrorCode::kFile, "'" + word + "' is not a number");
+      if (!std::isfinite(value)) refuse(ErrorCode::kNonfinite, "'" + word + "' is not finite");
+      result.push_back(value);
+    }
+    if (result.size() != 8 && result.size() != 9) {
+      refuse(ErrorCode::kFile, "has " + std::to_string(result.size()) +
+                                   " numbers, not t,x,y,z,qx,qy,qz,qw and maybe grip");
+    }
+    return result;
+  }
+
+ private:
+  std::string place_;
+};
+
+}  // namespace
+
+std::vector<StampedPose> read_poses(const std::string& path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(ErrorCode::kFile, "--path: '" + path + "' cannot be read");
+  std::vector<StampedPose> poses;
+  std::string text;
+  for (int number = 1; std::getline(file, text); ++number) {
+    const Line line(path, number);
+    if (text.empty() || text == "\r" || (number == 1 && std::isalpha(text[0]) != 0)) continue;
+    const std::vector<double> v = line.numbers(text);
+    const Eigen::Quaterniond turn(v[7], v[4], v[5], v[6]);
+    if (!(turn.norm() > 0.9 && turn.norm() < 1.1)) {
+      line.refuse(ErrorCode::kParam,
+                  "a quaternion of norm " + tissue::to_text(turn.norm()) + " is no rotation");
+    }
+    if (!poses.empty() && v[0] < poses.back().time) {
+      line.refuse(ErrorCode::kDt, "time " + tissue::to_text(v[0]) + " lies before " +
+                                      tissue::to_text(poses.back().time));
+    }
+    tissue::ToolPose pose;
+    pose.position = {v[1], v[2], v[3]};
+    pose.orientation = turn.normalized();
+    if (v.size() == 9) pose.closed = v[8] > 0.5;
+    poses.push_back({v[0], pose});
+  }
+  if (poses.empty()) throw InputError(ErrorCode::kFile, "--path: '" + path + "' has no poses");
+  return poses;
+}
+
+std::vector<Instant> merged(const std::vector<std::vector<StampedPose>>& paths) {
+  std::set<double> times;
+  for (const auto& path : paths) {
+    for (const StampedPose& pose : path) times.insert(pose.time);
+  }
+  std::vector<std::size_t> next(paths.size(), 0);
+  std::vector<Instant> instants;
+  for (const double time : times) {
+    Instant instant = {time, tissue::ToolPoses(paths.size())};
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      while (next[i] < paths[i].size() && paths[i][next[i]].time <= time) ++next[i];
+      const bool is_over = !paths[i].empty() && paths[i].back().time < time;
+      if (next[i] > 0 && !is_over) instant.tools[i] = paths[i][next[i] - 1].pose;
+    }
+    instants.push_back(instant);
+  }
+  return instants;
+}
+
+}  // namespace tissue_tools

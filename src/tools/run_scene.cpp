@@ -1,0 +1,212 @@
+// Runs a scene on a mesh file, without ROS.
+#include "pose_path.h"
+#include "program.h"
+#include "tissue/base/error.h"
+#include "tissue/base/mesh_file.h"
+#include "tissue/simulate/scene_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace {
+
+namespace po = boost::program_options;
+using tissue::ErrorCode;
+using tissue::InputError;
+
+struct Arguments {
+  std::string scene, mesh, output, stats;
+  std::vector<std::string> paths;
+  int threads = 1;
+};
+
+po::options_description options() {
+  po::options_description all(
+      "run_scene SCENE.yaml --mesh IN.vtu [--path [TOOL=]POSES.csv ...] -o OUT.vtu\n"
+      "Moves a mesh as a scene says: one equilibrium without poses, one step per pose with them.\n"
+      "example: run_scene config/scenes/sag.yaml --mesh brain.vtu -o sagged.vtu\n");
+  all.add_options()("scene", po::value<std::string>(), "scene file")(
+      "mesh", po::value<std::string>(), "VTU file of tets [m]")(
+      "path", po::value<std::vector<std::string>>()->composing(),
+      "poses t,x,y,z,qx,qy,qz,qw[,grip] of a tool (s, m); of the first without a name")(
+      "threads", po::value<int>()->default_value(1), "threads; the result is the same")(
+      "output,o", po::value<std::string>(), "VTU file: the mesh at rest with its displacement")(
+      "stats", po::value<std::string>(), "JSON file of figures")("help,h", "show this");
+  return all;
+}
+
+Arguments arguments_from(const po::variables_map& given) {
+  const auto required = [&](const char* option) {
+    if (given.count(option) != 0) return given[option].as<std::string>();
+    throw InputError(ErrorCode::kParam, std::string(option) + ": is missing; --help says how");
+  };
+  Arguments arguments;
+  arguments.scene = required("scene");
+  arguments.mesh = required("mesh");
+  arguments.output = required("output");
+  if (given.count("stats") != 0) arguments.stats = given["stats"].as<std::string>();
+  if (given.count("path") != 0) arguments.paths = given["path"].as<std::vector<std::string>>();
+  arguments.threads = given["threads"].as<int>();
+  if (arguments.threads < 1 || arguments.threads > 1024) {
+    throw InputError(ErrorCode::kParam, "--threads: " + std::to_string(arguments.threads) +
+                                            " is not within 1 to 1024");
+  }
+  return arguments;
+}
+
+// One path for each tool of the scene; empty for a tool without one.
+std::vector<std::vector<tissue_tools::StampedPose>> paths_for(
+    const tissue::SceneDescription& scene, const std::vector<std::string>& options) {
+  std::vector<std::vector<tissue_tools::StampedPose>> paths(scene.tools.size());
+  for (const std::string& option : options) {
+    const std::size_t equals = option.find('=');
+    const std::string tool = equals == std::string::npos ? "" : option.substr(0, equals);
+    std::size_t which = 0;
+    while (!tool.empty() && which < scene.tools.size() && scene.tools[which].name != tool) ++which;
+    if (which >= scene.tools.size()) {
+      throw InputError(ErrorCode::kParam, "--path: the scene has no tool '" + tool + "'");
+    }
+    if (!paths[which].empty()) {
+      throw InputError(ErrorCode::kParam,
+                       "--path: tool " + scene.tools[which].name + " has two paths");
+    }
+    paths[which] =
+        tissue_tools::read_poses(equals == std::string::npos ? option : option.substr(equals + 1));
+  }
+  return paths;
+}
+
+nlohmann::json triple(const tissue::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+// What the steps of a run cost and how they went.
+struct Record {
+  std::vector<double> seconds;
+  std::size_t failed = 0;
+  tissue::StepReport last;
+  bool clamped = false;
+
+  double percentile(double part) const {
+    std::vector<double> sorted = seconds;
+    std::sort(sorted.begin(), sorted.end());
+    const auto last_one = static_cast<double>(sorted.size() - 1);
+    return sorted[static_cast<std::size_t>(std::ceil(part * last_one))];
+  }
+};
+
+nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
+  const tissue::DeformationQuality quality =
+      tissue::deformation_quality(scene.body(), scene.state());
+  nlohmann::json effects = nlohmann::json::array(), probes = nlohmann::json::object(),
+                 reactions = nlohmann::json::object(), flags = nlohmann::json::array();
+  for (const tissue::EffectCost& cost : scene.effect_costs()) {
+    effects.push_back({{"name", cost.name}, {"seconds", cost.seconds}, {"bytes", cost.bytes}});
+  }
+  for (const auto& [name, place] : scene.probes()) {
+    probes[name] = place ? triple(*place) : nlohmann::json();
+  }
+  const std::vector<std::optional<tissue::Vec3>> forces = scene.tool_forces();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (forces[i]) reactions[scene.description().tools[i].name] = triple(*forces[i]);
+  }
+  if (scene.anchor_force()) reactions["anchors"] = triple(*scene.anchor_force());
+  if (record.failed > 0) flags.push_back("NOT_CONVERGED");
+  if (record.clamped) flags.push_back("CLAMPED");
+  return {{"scene", scene.description().name},
+          {"model", name(scene.description().model)},
+          {"element_order", scene.description().element_order},
+          {"tetrahedra", scene.body().tets.size()},
+          {"vertices", scene.body().rest.size()},
+          {"steps", record.seconds.size()},
+          {"steps_not_converged", record.failed},
+          {"step_seconds",
+           {{"median", record.percentile(0.5)},
+            {"p99", record.percentile(0.99)},
+            {"max", record.percentile(1.0)}}},
+          {"effects", effects},
+          {"iterations", record.last.iterations},
+          {"residual", record.last.residual},
+          {"energy_j", record.last.energy ? nlohmann::json(*record.last.energy) : nlohmann::json()},
+          {"min_det_f", quality.min_det_f},
+          {"inverted", quality.inverted},
+          {"probes", probes},
+          {"reaction_n", reactions},
+          {"flags", flags}};
+}
+
+Record run_instants(tissue::Scene& scene, const std::vector<tissue_tools::Instant>& instants) {
+  Record record;
+  for (std::size_t i = 0; i < instants.size(); ++i) {
+    const double dt = i == 0 ? 0.0 : instants[i].time - instants[i - 1].time;
+    const auto start = std::chrono::steady_clock::now();
+    record.last = scene.step(instants[i].tools, dt);
+    record.seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    record.failed += record.last.not_converged;
+    record.clamped = record.clamped || record.last.clamped;
+    tissue_tools::show_progress(static_cast<double>(i + 1) / static_cast<double>(instants.size()),
+                                "step " + std::to_string(i + 1));
+  }
+  return record;
+}
+
+void write_result(const tissue::TetMesh& mesh, const tissue::Scene& scene,
+                  const std::string& path) {
+  std::vector<tissue::Vec3> displacements;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    displacements.push_back(scene.state().positions[v] - mesh.vertices[v].cast<double>());
+  }
+  std::vector<tissue::TetField> fields;
+  const std::vector<tissue::TetStrain> strains = scene.strains();
+  if (!strains.empty()) {
+    fields = {{"von_mises_stress", {}}, {"largest_strain", {}}};
+    for (const tissue::TetStrain& strain : strains) {
+      fields[0].values.push_back(strain.von_mises);
+      fields[1].values.push_back(strain.largest_strain);
+    }
+  }
+  tissue::write_mesh(mesh, path, fields, displacements);
+}
+
+void run(const Arguments& arguments) {
+  const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
+  std::vector<tissue_tools::Instant> instants =
+      tissue_tools::merged(paths_for(description, arguments.paths));
+  if (instants.empty()) instants.push_back({0.0, tissue::ToolPoses(description.tools.size())});
+  const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
+  tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
+                      arguments.threads);
+  const Record record = run_instants(scene, instants);
+  write_result(mesh, scene, arguments.output);
+  const nlohmann::json stats = figures(scene, record);
+  if (!arguments.stats.empty()) {
+    tissue_tools::write_text("--stats", arguments.stats, stats.dump(2));
+  }
+  double farthest = 0.0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    farthest =
+        std::max(farthest, (scene.state().positions[v] - mesh.vertices[v].cast<double>()).norm());
+  }
+  std::printf("%s, %s of order %d, %zu tets: %zu steps, %.4g s each (median)\n",
+              description.name.c_str(), name(description.model), description.element_order,
+              mesh.tets.size(), record.seconds.size(), record.percentile(0.5));
+  std::printf("largest displacement %.3g m, smallest det F %.3g, %zu tets inverted\n", farthest,
+              stats["min_det_f"].get<double>(), stats["inverted"].get<std::size_t>());
+  if (record.failed > 0) {
+    std::printf(
+        "NOT_CONVERGED in %zu steps, residual of the last %.3g: the state is the last "
+        "that was an equilibrium\n",
+        record.failed, record.last.residual);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return tissue_tools::run_program("run_scene", options(), "scene", argc, argv,
+                                   [](const auto& given) { run(arguments_from(given)); });
+}
