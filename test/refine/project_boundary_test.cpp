@@ -75,7 +75,7 @@ TEST(ProjectBoundary, NeverTurnsATetInsideOut) {
   const std::vector<Vec3f> before = vertices;
   // The base belongs to no boundary triangle, so that only the apex may move.
   const auto moved = project_boundary(surface_at_iso(volume, 100.0), vertices, {{0, 1, 2, 3}},
-                                      {{3, 3, 3}}, 0.01, {4, 0}, {});
+                                      {{3, 3, 3}}, {{0, 1}}, 0.01, {4, 0}, {});
   for (int v = 0; v < 3; ++v) EXPECT_EQ(vertices[v], before[v]);
   EXPECT_EQ(moved, (std::vector<std::uint8_t>{0, 0, 0, 1}));
   EXPECT_LT(vertices[3].z(), 0.014f);

@@ -1,9 +1,6 @@
 // Finite elements against what is known exactly.
 #include "support/bodies.h"
-#include "support/mesh_checks.h"
-#include "tissue/simulate/elastic_energy.h"
-#include "tissue/simulate/equilibrium.h"
-#include "tissue/simulate/material.h"
+#include "support/problem.h"
 
 #include <gtest/gtest.h>
 
@@ -14,71 +11,11 @@
 namespace {
 
 using namespace tissue;
+using tissue_test::boundary_nodes;
+using tissue_test::kSoft;
 using tissue_test::kuhn_block;
 using tissue_test::nodes_where;
-
-const Material kSoft = {{{0.0, 5e4}}, 0.45, 1000.0};
-
-// A body of one constitution whose held nodes and loads a test sets.
-struct Problem {
-  Problem(Body b, int order, Constitution constitution, const Material& material, int threads = 1)
-      : body(std::move(b)),
-        elements(body, order),
-        lame(lame_of(material, body)),
-        energy(elements, lame, constitution, with_threads(threads)),
-        positions(rest_positions(elements)) {}
-
-  static Run with_threads(int threads) {
-    Run run;
-    run.threads = threads;
-    return run;
-  }
-
-  Vec3 displacement(std::size_t node) const {
-    return positions.segment<3>(static_cast<Eigen::Index>(3 * node)) - elements.rest()[node];
-  }
-  void move(std::size_t node, const Vec3& by) {
-    positions.segment<3>(static_cast<Eigen::Index>(3 * node)) += by;
-  }
-
-  EquilibriumReport solve(const std::vector<std::uint8_t>& held, const Energy* load = nullptr,
-                          double tolerance = 1e-10) {
-    std::vector<const Energy*> energies = {&energy};
-    if (load != nullptr) energies.push_back(load);
-    Equilibrium equilibrium(energies, energy.empty_hessian(), direct_solver());
-    equilibrium.hold(held);
-    Eigen::VectorXd motion = positions - rest_positions(elements);
-    for (std::size_t node = 0; node < held.size(); ++node) {
-      if (held[node] == 0) motion.segment<3>(static_cast<Eigen::Index>(3 * node)).setZero();
-    }
-    positions -= motion;
-    equilibrium.follow(positions, motion);
-    return equilibrium.solve(positions, {tolerance, 100});
-  }
-
-  Body body;
-  FiniteElements elements;
-  std::vector<Lame> lame;
-  ElasticEnergy energy;
-  Eigen::VectorXd positions;
-};
-
-std::vector<std::uint8_t> boundary_nodes(const Problem& problem) {
-  std::vector<std::uint8_t> on(problem.elements.node_count(), 0);
-  std::set<Edge> edges;
-  for (const Triangle& triangle : problem.body.surface) {
-    for (int i = 0; i < 3; ++i) {
-      on[triangle[i]] = 1;
-      const auto [low, high] = std::minmax(triangle[i], triangle[(i + 1) % 3]);
-      edges.insert({low, high});
-    }
-  }
-  const std::vector<Edge>& midpoints = problem.elements.midpoints();
-  for (std::size_t i = 0; i < midpoints.size(); ++i) {
-    if (edges.count(midpoints[i]) != 0) on[problem.body.rest.size() + i] = 1;
-  }
-  return on;
-}
+using tissue_test::Problem;
 
 // The largest error of an affine displacement of the boundary within the body, by its size.
 double patch_error(Body body, int order, Constitution constitution) {
@@ -200,60 +137,6 @@ TEST(Elasticity, AClampedBeamSagsAsFarAsItsModelHasItsLimit) {
   EXPECT_NEAR(sag({8, 4, 4}, 2, Constitution::kLinear), 55.8, 0.03 * 55.8);
   EXPECT_NEAR(sag({8, 4, 4}, 2, Constitution::kNeoHookean), 53.42, 0.05);
   EXPECT_NEAR(sag({8, 4, 4}, 2, Constitution::kCorotational), 54.3, 0.03 * 54.3);
-}
-
-// Displacement of the tumour sphere of FACTS.md: a ball of radius a in one of radius b whose
-// surface moves out by U.
-struct TumourSphere {
-  double inner, a, b;
-  TumourSphere(double radius, double outer_radius, double moved, const Lame& tissue,
-               const Lame& tumour) {
-    const double k_m = tissue.lambda + 2.0 / 3.0 * tissue.mu;
-    const double k_i = tumour.lambda + 2.0 / 3.0 * tumour.mu;
-    const double cube = radius * radius * radius;
-    // e = A + B/a³ and 3 K_i e = 3 K_m A − 4 μ_m B/a³ and A b + B/b² = U.
-    const double ratio = 3.0 * (k_m - k_i) / (3.0 * k_i + 4.0 * tissue.mu);
-    a = moved / (outer_radius + ratio * cube / (outer_radius * outer_radius));
-    b = ratio * cube * a;
-    inner = a + b / cube;
-  }
-};
-
-// Relative L2 error of the displacement over the nodes of a tumour sphere.
-double tumour_sphere_error(const TetMesh& mesh, int order) {
-  constexpr double kRadius = 0.010, kMoved = 1e-4;
-  Body body = tissue_test::ball_body(mesh, kRadius, 255.0f, 60.0f);
-  double outer = 0.0;
-  for (const Triangle& triangle : body.surface) {
-    for (const std::uint32_t v : triangle) outer += body.rest[v].cast<double>().norm();
-  }
-  outer /= 3.0 * static_cast<double>(body.surface.size());
-  const Material material = {{{60.0, 3e3}, {255.0, 6e4}}, 0.3, 1000.0};
-  Problem problem(std::move(body), order, Constitution::kLinear, material);
-  const TumourSphere exact(kRadius, outer, kMoved, lame_of(3e3, 0.3), lame_of(6e4, 0.3));
-  const auto expected = [&](const Vec3& place) -> Vec3 {
-    const double r = place.norm();
-    return r < kRadius ? Vec3(exact.inner * place)
-                       : Vec3((exact.a + exact.b / (r * r * r)) * place);
-  };
-  const std::vector<std::uint8_t> held = boundary_nodes(problem);
-  for (std::size_t node = 0; node < held.size(); ++node) {
-    if (held[node] != 0) problem.move(node, expected(problem.elements.rest()[node]));
-  }
-  EXPECT_TRUE(problem.solve(held).converged);
-  double squares = 0.0, all = 0.0;
-  for (std::size_t node = 0; node < held.size(); ++node) {
-    const Vec3 wanted = expected(problem.elements.rest()[node]);
-    squares += (problem.displacement(node) - wanted).squaredNorm();
-    all += wanted.squaredNorm();
-  }
-  return std::sqrt(squares / all);
-}
-
-TEST(Elasticity, TumourSphereOnDensityRefinedMeshesComesNearerAsTheyGetFiner) {
-  const double coarse = tumour_sphere_error(tissue_test::refined_ball(0.020), 1);
-  const double fine = tumour_sphere_error(tissue_test::refined_ball(0.010), 1);
-  EXPECT_LT(fine, coarse / 1.8);
 }
 
 // A bar of layers, each with its own stiffness, pulled along its length with its sides sliding:

@@ -70,6 +70,32 @@ TEST(SolidScene, AGraspedPatchGoesWithTheToolAndTheTissueComesBackWhenItIsReleas
   }
 }
 
+// Small strain is superposed from columns: the answer to twice the motion is twice the answer, and
+// near rest the solid that is solved answers the same.
+TEST(SolidScene, TheLinearModelSuperposesWhatTheOthersSolve) {
+  for (const int order : {1, 2}) {
+    const auto body = block();
+    const std::string more =
+        "element_order: " + std::to_string(order) + "\nsolver: {tolerance: 1e-9}\n";
+    const auto displaced = [&](const char* model, double size) {
+      Scene scene(scene_of(model, more), body);
+      scene.step(ToolPose{kEnd, true}, 0.0);
+      const Eigen::Quaterniond turn(Eigen::AngleAxisd(size, Vec3(1, 2, 3).normalized()));
+      scene.step(ToolPose{kEnd + size * Vec3(0.02, 0.01, -0.03), true, turn}, 0.01);
+      std::vector<Vec3> result = scene.state().positions;
+      for (std::size_t v = 0; v < result.size(); ++v) result[v] -= body->rest[v].cast<double>();
+      result.push_back(1e-3 * *scene.tool_forces()[0]);
+      return result;
+    };
+    const auto once = displaced("linear", 1e-4), twice = displaced("linear", 2e-4),
+               solved = displaced("neo_hookean", 1e-4);
+    for (std::size_t v = 0; v < once.size(); ++v) {
+      EXPECT_LE((twice[v] - 2.0 * once[v]).norm(), 1e-3 * once.front().norm() + 1e-9);
+      EXPECT_LE((solved[v] - once[v]).norm(), 1e-2 * once[v].norm() + 1e-8);
+    }
+  }
+}
+
 TEST(SolidScene, WorksOnRefinedMeshesWithATumourByDensity) {
   const auto body = refined();
   for (const char* model : kSolids) {

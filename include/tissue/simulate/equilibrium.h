@@ -32,8 +32,10 @@ class Equilibrium {
   Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
               std::unique_ptr<LinearSolver> solver, bool quadratic = false);
 
-  /// Which nodes do not move by themselves. Throws InputError E_PARAM if none is free.
+  /// Which nodes do not move by themselves, a flag for each. Throws InputError E_PARAM if all are.
   void hold(const std::vector<std::uint8_t>& fixed_nodes);
+  /// The same by coordinates, three flags for each node: a node may slide along an axis.
+  void hold_coordinates(const std::vector<std::uint8_t>& fixed);
 
   /// From `positions`, in which fixed nodes are where they are to be, to the equilibrium. Where it
   /// is not found `positions` holds the best finite state that was.
@@ -42,6 +44,9 @@ class Equilibrium {
   /// How the free nodes move when the fixed ones do, to first order: a start nearer to the
   /// equilibrium than leaving them behind. `motion` holds the motion of fixed nodes.
   void follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
+
+  /// That motion of all nodes; `motion` alone where the Hessian cannot be factorised.
+  Eigen::VectorXd response(const Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
 
   double energy(const Eigen::VectorXd& positions) const;
   /// dE/dx of all nodes; at fixed ones it is the force that holds them [N].

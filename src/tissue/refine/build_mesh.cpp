@@ -80,15 +80,6 @@ StuffingOptions lattice_for(const Organ& organ, const MeshOptions& options,
   });
 }
 
-std::vector<std::uint64_t> level_counts(const std::vector<std::uint8_t>& levels) {
-  std::vector<std::uint64_t> counts;
-  for (const std::uint8_t level : levels) {
-    if (level >= counts.size()) counts.resize(level + 1u, 0);
-    ++counts[level];
-  }
-  return counts;
-}
-
 TetMesh as_uniform(LatticeMesh& lattice, std::vector<std::uint8_t> levels) {
   TetMesh mesh;
   mesh.vertices.reserve(lattice.vertices.size());
@@ -162,11 +153,14 @@ class Builder {
     if (design_.refined) {
       mesh_ = as_refined(fill_mesh(design_.lattice, design_.plan, design_.blocks, run_));
       first_tet_ = std::move(design_.blocks.first_tet);
+      near_boundary_ = tets_near_boundary(design_.lattice.mesh.tets, first_tet_, mesh_.surface,
+                                          lattice_vertices_);
       dihedral_ = design_.plan.whole_dihedral;
       dihedral_.include(design_.plan.cut_dihedral);
       whole_dihedral_ = design_.plan.whole_dihedral;
     } else {
       mesh_ = as_uniform(design_.lattice.mesh, std::move(design_.levels));
+      near_boundary_ = {{0, mesh_.tets.size()}};
       whole_dihedral_ = kWholeAngles;
       dihedral_ = angles({});
     }
@@ -203,8 +197,8 @@ class Builder {
     run_.enter({"projection", 0.5, mesh_.tets.size()});
     if (options_.project_boundary && !options_.lattice_only) {
       const std::vector<std::uint8_t> moved =
-          project_boundary(organ_.surface, mesh_.vertices, mesh_.tets, mesh_.surface, spacing_,
-                           options_.projection, run_);
+          project_boundary(organ_.surface, mesh_.vertices, mesh_.tets, mesh_.surface,
+                           near_boundary_, spacing_, options_.projection, run_);
       dihedral_ = angles(moved);
     }
     const SurfaceDistance distance =
@@ -214,6 +208,7 @@ class Builder {
     statistics_.boundary_vertices_astray = distance.astray;
     whole_ = {};
     first_tet_ = {};
+    near_boundary_ = {};
   }
 
   void sample() {
@@ -260,6 +255,7 @@ class Builder {
   // mesh, whose tets are the lattice's).
   std::vector<std::uint8_t> whole_;
   std::vector<std::size_t> first_tet_;
+  std::vector<TetRange> near_boundary_;
   std::uint32_t lattice_vertices_ = 0;
   double spacing_ = 0.0;
 };

@@ -22,6 +22,16 @@ inline double volume_inside(const TetMesh& mesh) {
   return sum / 6.0;
 }
 
+/// How many lattice tets have each level.
+inline std::vector<std::uint64_t> level_counts(const std::vector<std::uint8_t>& levels) {
+  std::vector<std::uint64_t> counts;
+  for (const std::uint8_t level : levels) {
+    if (level >= counts.size()) counts.resize(level + 1u, 0);
+    ++counts[level];
+  }
+  return counts;
+}
+
 /// Angles of the tets for which `known` says no; `unit` is about the length of an edge [m].
 template <class Known>
 DihedralRange measured_angles(const TetMesh& mesh, double unit, const Run& run,

@@ -17,7 +17,8 @@ constexpr int kHalvings = 4;
 class Projector {
  public:
   Projector(std::vector<Vec3f>& vertices, const std::vector<Tet>& tets,
-            const std::vector<Triangle>& boundary, double unit, const Run& run)
+            const std::vector<Triangle>& boundary, const std::vector<TetRange>& near, double unit,
+            const Run& run)
       : vertices_(vertices),
         tets_(tets),
         unit_(unit),
@@ -26,7 +27,7 @@ class Projector {
         on_boundary_(vertices.size(), 0) {
     std::vector<std::uint32_t> list = vertices_of(boundary, vertices.size());
     for (const std::uint32_t v : list) on_boundary_[v] = 1;
-    rings_ = vertex_rings(std::move(list), tets, vertices.size(), run);
+    rings_ = vertex_rings(std::move(list), tets, near, vertices.size(), run);
     targets_.resize(rings_.vertices.size());
     astray_.assign(rings_.vertices.size(), 1);
     for (const std::uint32_t v : rings_.vertices) before_.push_back(vertices[v]);
@@ -55,7 +56,7 @@ class Projector {
         const Vec3f step = targets_[which] - vertices_[rings_.vertices[which]];
         // Where no surface was found the target is where the vertex was.
         if (step.isZero(0.0f) || !has_new_room(which)) continue;
-        astray_[which] = !move(rings_, which, step, kAtBoundary, guard);
+        astray_[which] = !move(rings_, which, step, guard);
       }
     });
   }
@@ -65,7 +66,8 @@ class Projector {
   void follow() {
     const std::vector<std::uint32_t> inner = inner_neighbours();
     if (inner.empty()) return;
-    const VertexRings rings = vertex_rings(inner, tets_, vertices_.size(), run_);
+    const VertexRings rings =
+        vertex_rings(inner, tets_, {{0, tets_.size()}}, vertices_.size(), run_);
     std::vector<Vec3f> displacement(vertices_.size(), Vec3f::Zero());
     for (std::size_t i = 0; i < rings_.vertices.size(); ++i) {
       // What is held back pulls with the whole way that it has still to go.
@@ -86,7 +88,7 @@ class Projector {
           }
         }
         const Vec3f place = vertices_[vertex];
-        move(rings, which, sum / static_cast<float>(count), kWithin, guard);
+        move(rings, which, sum / static_cast<float>(count), guard);
         displacement[vertex] = vertices_[vertex] - place;
       }
     });
@@ -114,18 +116,21 @@ class Projector {
     return false;
   }
 
+  bool is_at_boundary(const Tet& tet) const {
+    return (on_boundary_[tet[0]] | on_boundary_[tet[1]] | on_boundary_[tet[2]] |
+            on_boundary_[tet[3]]) != 0;
+  }
+
   // Moves a vertex by as much of `step` as its ring allows. True if by all of it.
-  bool move(const VertexRings& rings, std::uint32_t which, const Vec3f& step,
-            const AngleBounds& bounds, RingGuard& guard) {
+  bool move(const VertexRings& rings, std::uint32_t which, const Vec3f& step, RingGuard& guard) {
     const std::uint32_t vertex = rings.vertices[which];
     const std::uint32_t* ring = &rings.tets[rings.begin[which]];
     const std::size_t count = rings.begin[which + 1] - rings.begin[which];
     guard.gather(vertex, ring, count, tets_, vertices_);
+    // All tets around a boundary vertex are at the boundary.
+    const bool is_within = on_boundary_[vertex] == 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const Tet& tet = tets_[ring[i]];
-      const bool at_boundary = (on_boundary_[tet[0]] | on_boundary_[tet[1]] | on_boundary_[tet[2]] |
-                                on_boundary_[tet[3]]) != 0;
-      guard.bound(i, at_boundary ? kAtBoundary : bounds);
+      guard.bound(i, is_within && !is_at_boundary(tets_[ring[i]]) ? kWithin : kAtBoundary);
     }
     const Vec3f start = vertices_[vertex];
     float part = 1.0f;
@@ -175,9 +180,10 @@ class Projector {
 std::vector<std::uint8_t> project_boundary(const ImplicitSurface& surface,
                                            std::vector<Vec3f>& vertices,
                                            const std::vector<Tet>& tets,
-                                           const std::vector<Triangle>& boundary, double reach,
+                                           const std::vector<Triangle>& boundary,
+                                           const std::vector<TetRange>& near, double reach,
                                            const ProjectionOptions& options, const Run& run) {
-  Projector projector(vertices, tets, boundary, reach, run);
+  Projector projector(vertices, tets, boundary, near, reach, run);
   const double voxel = surface.field->grid.spacing.minCoeff();
   with_implicit_function(surface, [&](const auto& f) {
     projector.aim(f, voxel, reach);
@@ -190,6 +196,31 @@ std::vector<std::uint8_t> project_boundary(const ImplicitSurface& surface,
     }
   });
   return projector.moved();
+}
+
+std::vector<TetRange> tets_near_boundary(const std::vector<Tet>& lattice_tets,
+                                         const std::vector<std::size_t>& first_tet,
+                                         const std::vector<Triangle>& boundary,
+                                         std::uint32_t lattice_vertices) {
+  std::vector<std::uint8_t> on_boundary(lattice_vertices, 0);
+  for (const Triangle& triangle : boundary) {
+    for (const std::uint32_t v : triangle) {
+      if (v < lattice_vertices) on_boundary[v] = 1;
+    }
+  }
+  std::vector<TetRange> ranges;
+  for (std::size_t t = 0; t < lattice_tets.size(); ++t) {
+    const Tet& tet = lattice_tets[t];
+    if ((on_boundary[tet[0]] | on_boundary[tet[1]] | on_boundary[tet[2]] | on_boundary[tet[3]]) ==
+        0) {
+      continue;
+    }
+    if (ranges.empty() || ranges.back().end != first_tet[t]) {
+      ranges.push_back({first_tet[t], first_tet[t]});
+    }
+    ranges.back().end = first_tet[t + 1];
+  }
+  return ranges;
 }
 
 }  // namespace tissue

@@ -48,7 +48,8 @@ void RingGuard::gather(std::uint32_t vertex, const std::uint32_t* ring, std::siz
   const Vec3f& origin = vertices[vertex];
   for (std::size_t i = 0; i < count; ++i) {
     const Tet& tet = tets[ring[i]];
-    const int own = tet[0] == vertex ? 0 : tet[1] == vertex ? 1 : tet[2] == vertex ? 2 : 3;
+    // Without branches, which nobody could predict.
+    const int own = (tet[1] == vertex) + 2 * (tet[2] == vertex) + 3 * (tet[3] == vertex);
     for (int k = 0; k < 3; ++k) {
       const Vec3f& other = vertices[tet[kOthers[own][k]]];
       for (int axis = 0; axis < 3; ++axis) {

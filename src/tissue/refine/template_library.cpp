@@ -129,6 +129,7 @@ class Fitting {
  public:
   Fitting(const Blueprint& blueprint, const std::array<Vec3, 4>& corners)
       : blueprint_(blueprint), batch_((corners[1] - corners[0]).norm()) {
+    ranges_.reserve(4 * blueprint.shapes.size());
     for (const Blueprint::Shape& shape : blueprint.shapes) {
       const std::array<Vec3f, 10> points = points_of(shape, corners);
       for (const Splitting& splitting : *shape.splittings) {

@@ -10,13 +10,17 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 
 // Bytes as flags, because most tets touch none of the vertices and flags stay in the cache.
 std::vector<std::uint32_t> tets_at(const std::vector<std::uint32_t>& vertices,
-                                   const std::vector<Tet>& all_tets, std::size_t vertex_count) {
+                                   const std::vector<Tet>& all_tets,
+                                   const std::vector<TetRange>& where, std::size_t vertex_count) {
   std::vector<std::uint8_t> flags(vertex_count, 0);
   for (const std::uint32_t v : vertices) flags[v] = 1;
   std::vector<std::uint32_t> result;
-  for (std::uint32_t t = 0; t < all_tets.size(); ++t) {
-    const Tet& tet = all_tets[t];
-    if ((flags[tet[0]] | flags[tet[1]] | flags[tet[2]] | flags[tet[3]]) != 0) result.push_back(t);
+  for (const TetRange& range : where) {
+    for (std::size_t t = range.begin; t < range.end; ++t) {
+      const Tet& tet = all_tets[t];
+      if ((flags[tet[0]] | flags[tet[1]] | flags[tet[2]] | flags[tet[3]]) == 0) continue;
+      result.push_back(static_cast<std::uint32_t>(t));
+    }
   }
   return result;
 }
@@ -66,12 +70,13 @@ class BlockGraph {
 }  // namespace
 
 VertexRings vertex_rings(std::vector<std::uint32_t> vertices, const std::vector<Tet>& all_tets,
-                         std::size_t vertex_count, const Run& run) {
+                         const std::vector<TetRange>& where, std::size_t vertex_count,
+                         const Run& run) {
   VertexRings rings;
   rings.vertices = std::move(vertices);
   std::vector<std::uint32_t> index(vertex_count, kNone);
   for (std::uint32_t i = 0; i < rings.vertices.size(); ++i) index[rings.vertices[i]] = i;
-  const std::vector<std::uint32_t> touched = tets_at(rings.vertices, all_tets, vertex_count);
+  const std::vector<std::uint32_t> touched = tets_at(rings.vertices, all_tets, where, vertex_count);
   rings.begin.assign(rings.vertices.size() + 1, 0);
   BlockGraph graph(rings.vertices.size());
   for (const std::uint32_t t : touched) {

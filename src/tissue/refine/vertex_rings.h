@@ -2,6 +2,7 @@
 
 #include "tissue/base/parallel.h"
 #include "tissue/base/types.h"
+#include "tissue/refine/project_boundary.h"
 
 #include <vector>
 
@@ -34,7 +35,9 @@ struct VertexRings {
   }
 };
 
+/// Looks for tets in `where` alone.
 VertexRings vertex_rings(std::vector<std::uint32_t> vertices, const std::vector<Tet>& all_tets,
-                         std::size_t vertex_count, const Run& run);
+                         const std::vector<TetRange>& where, std::size_t vertex_count,
+                         const Run& run);
 
 }  // namespace tissue

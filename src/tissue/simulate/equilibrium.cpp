@@ -27,12 +27,17 @@ Equilibrium::Equilibrium(std::vector<const Energy*> energies, BlockMatrix patter
 }
 
 void Equilibrium::hold(const std::vector<std::uint8_t>& fixed_nodes) {
+  std::vector<std::uint8_t> coordinates;
+  coordinates.reserve(3 * fixed_nodes.size());
+  for (const std::uint8_t fixed : fixed_nodes) coordinates.insert(coordinates.end(), 3, fixed);
+  hold_coordinates(coordinates);
+}
+
+void Equilibrium::hold_coordinates(const std::vector<std::uint8_t>& fixed) {
   number_.clear();
   free_count_ = 0;
   is_factorised_ = false;
-  for (const std::uint8_t fixed : fixed_nodes) {
-    for (int axis = 0; axis < 3; ++axis) number_.push_back(fixed != 0 ? -1 : free_count_++);
-  }
+  for (const std::uint8_t one : fixed) number_.push_back(one != 0 ? -1 : free_count_++);
   if (free_count_ == 0) throw InputError(ErrorCode::kParam, "anchors: every vertex is held");
 }
 
@@ -115,16 +120,18 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
   return false;
 }
 
-void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion) {
-  if (!factorise(positions)) {
-    positions += motion;
-    return;
-  }
+Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
+                                      const Eigen::VectorXd& motion) {
+  if (!factorise(positions)) return motion;
   // With the forces that are out of balance left as they are, so that a start at an equilibrium
   // stays near one.
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size());
   hessian_.multiply_add(motion, pull);
-  positions += motion + step_for(pull);
+  return motion + step_for(pull);
+}
+
+void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion) {
+  positions += response(positions, motion);
 }
 
 EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,

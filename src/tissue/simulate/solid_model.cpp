@@ -1,9 +1,11 @@
 #include "deformation_model.h"
-#include "grip.h"
+#include "held_nodes.h"
+#include "linear_response.h"
 #include "tissue/simulate/elastic_energy.h"
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <utility>
 
 namespace tissue {
@@ -45,11 +47,9 @@ class SolidModel : public DeformationModel {
         elements_(body, scene.element_order),
         lame_(lame_with_cost(scene, body, costs)),
         elastic_(elements_, lame_, constitution_of(scene.model), run_on(threads)),
-        anchored_(anchored_vertices(body, scene.anchors)),
+        held_(elements_, scene.tools, held_vertices(body, scene.anchors)),
         rest_(rest_positions(elements_)),
-        positions_(rest_),
-        grips_(scene.tools.size()) {
-    require_held(body, anchored_);
+        positions_(rest_) {
     std::vector<const Energy*> energies = {&elastic_};
     if (scene.has(Effect::kGravity)) {
       EffectCost* const cost = costs.of(Effect::kGravity);
@@ -60,59 +60,59 @@ class SolidModel : public DeformationModel {
     }
     equilibrium_ = std::make_unique<Equilibrium>(std::move(energies), elastic_.empty_hessian(),
                                                  direct_solver(), scene.model == Model::kLinear);
-    put_to_rest();
+    reset();
   }
 
   StepReport step(const ToolPoses& tools, double) override {
-    for (std::size_t i = 0; i < tools.size(); ++i) {
-      if (!grips_[i].update(tools[i], scene_.tools[i], state_.positions, taken_)) continue;
-      regrip_ = true;
-      find_taken();
+    const bool regrip = held_.update(tools, state_.positions);
+    if (scene_.model == Model::kLinear && !regrip && settled_) {
+      superpose(tools);
+      return report_;
     }
-    if (regrip_) equilibrium_->hold(held_nodes());
-    const Eigen::VectorXd motion = motion_to(tools);
-    if (regrip_ || !settled_ || !motion.isZero(0.0)) move(motion);
-    regrip_ = false;
+    positions_ = positions_now();
+    response_.reset();
+    if (regrip) equilibrium_->hold(held_.flags());
+    const Eigen::VectorXd motion = held_.motion_to(tools, positions_);
+    if (regrip || !settled_ || !motion.isZero(0.0)) move(motion);
+    last_tools_ = tools;
     return report_;
   }
 
-  void reset() override { put_to_rest(); }
+  void reset() override {
+    held_.release();
+    equilibrium_->hold(held_.flags());
+    response_.reset();
+    positions_ = rest_;
+    state_ = rest_state(body_);
+    report_ = {};
+    report_.energy = equilibrium_->energy(positions_);
+    // Without a load, rest is the equilibrium.
+    settled_ = !gravity_;
+  }
+
   bool recovering() const override { return false; }
   const State& state() const override { return state_; }
 
   std::vector<std::optional<Vec3>> tool_forces() const override {
-    const Eigen::VectorXd gradient = equilibrium_->gradient(positions_);
+    const Eigen::VectorXd gradient = equilibrium_->gradient(positions_now());
     std::vector<std::optional<Vec3>> forces;
-    for (const Grip& grip : grips_) {
-      Vec3 sum = Vec3::Zero();
-      for (const std::uint32_t v : grip.vertices()) sum -= node(gradient, v);
-      for (const std::uint32_t m : midpoints_of(grip)) sum -= node(gradient, m);
-      forces.emplace_back(sum);
+    for (std::size_t i = 0; i < scene_.tools.size(); ++i) {
+      forces.emplace_back(held_.force_on_tool(i, gradient));
     }
     return forces;
   }
 
   std::optional<Vec3> anchor_force() const override {
-    const Eigen::VectorXd gradient = equilibrium_->gradient(positions_);
-    Vec3 sum = Vec3::Zero();
-    for (std::size_t v = 0; v < anchored_.size(); ++v) {
-      if (anchored_[v] != 0) sum -= node(gradient, v);
-    }
-    for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
-      const Edge& ends = elements_.midpoints()[i];
-      if (anchored_[ends[0]] != 0 && anchored_[ends[1]] != 0) {
-        sum -= node(gradient, anchored_.size() + i);
-      }
-    }
-    return sum;
+    return held_.force_on_anchors(equilibrium_->gradient(positions_now()));
   }
 
   std::vector<TetStrain> strains() const override {
     std::vector<TetStrain> result(body_.tets.size());
+    const Eigen::VectorXd positions = positions_now();
     for (std::size_t t = 0; t < result.size(); ++t) {
       for (const QuadraturePoint& point : elements_.quadrature()) {
         const TetStrain here = tet_strain(constitution_of(scene_.model), lame_[t],
-                                          elastic_.deformation_gradient(t, point, positions_));
+                                          elastic_.deformation_gradient(t, point, positions));
         result[t].von_mises += point.weight * here.von_mises;
         result[t].largest_strain += point.weight * here.largest_strain;
       }
@@ -130,63 +130,66 @@ class SolidModel : public DeformationModel {
     return result;
   }
 
-  static Vec3 node(const Eigen::VectorXd& all, std::size_t i) {
-    return all.segment<3>(static_cast<Eigen::Index>(3 * i));
-  }
-
-  bool is_held_midpoint(std::size_t i) const {
-    const Edge& ends = elements_.midpoints()[i];
-    return taken_[ends[0]] != 0 && taken_[ends[1]] != 0;
-  }
-
-  // Taken vertices, and the midpoints between two of them.
-  std::vector<std::uint8_t> held_nodes() const {
-    std::vector<std::uint8_t> held = taken_;
-    for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
-      held.push_back(is_held_midpoint(i));
-    }
+  static std::vector<std::uint8_t> held_vertices(const Body& body,
+                                                 const std::vector<Anchor>& anchors) {
+    std::vector<std::uint8_t> held = anchored_vertices(body, anchors);
+    require_held(body, held);
     return held;
   }
 
-  std::vector<std::uint32_t> midpoints_of(const Grip& grip) const {
-    std::vector<std::uint8_t> in_grip(body_.rest.size(), 0);
-    for (const std::uint32_t v : grip.vertices()) in_grip[v] = 1;
-    std::vector<std::uint32_t> result;
-    const std::vector<Edge>& midpoints = elements_.midpoints();
-    for (std::size_t i = 0; i < midpoints.size(); ++i) {
-      if (in_grip[midpoints[i][0]] != 0 && in_grip[midpoints[i][1]] != 0) {
-        result.push_back(static_cast<std::uint32_t>(body_.rest.size() + i));
-      }
-    }
-    return result;
-  }
-
-  void find_taken() {
-    taken_ = anchored_;
-    for (const Grip& grip : grips_) {
-      for (const std::uint32_t v : grip.vertices()) taken_[v] = 1;
-    }
-  }
-
-  // Vertices go where the tools take them, midpoints half-way between them.
-  Eigen::VectorXd motion_to(const ToolPoses& tools) const {
-    Eigen::VectorXd motion = Eigen::VectorXd::Zero(positions_.size());
+  // How each tool has moved since the base: its translation, then R − I column by column.
+  Eigen::VectorXd amounts_at(const ToolPoses& tools) const {
+    Eigen::VectorXd amounts = Eigen::VectorXd::Zero(12 * static_cast<Eigen::Index>(tools.size()));
     for (std::size_t i = 0; i < tools.size(); ++i) {
-      for (std::size_t k = 0; tools[i] && k < grips_[i].vertices().size(); ++k) {
-        const std::uint32_t v = grips_[i].vertices()[k];
-        motion.segment<3>(3 * Eigen::Index{v}) =
-            grips_[i].place(k, *tools[i]) - node(positions_, v);
+      if (!tools[i] || !base_tools_[i]) continue;
+      const auto k = 12 * static_cast<Eigen::Index>(i);
+      amounts.segment<3>(k) = tools[i]->position - base_tools_[i]->position;
+      // A tool that only moves costs one pass over the body, one that turns four.
+      if (tools[i]->orientation.coeffs() == base_tools_[i]->orientation.coeffs()) continue;
+      const Eigen::Quaterniond turn =
+          tools[i]->orientation.normalized() * base_tools_[i]->orientation.normalized().conjugate();
+      const Mat3 change = turn.toRotationMatrix() - Mat3::Identity();
+      amounts.segment<9>(k + 3) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change.data());
+    }
+    return amounts;
+  }
+
+  // Twelve motions for each tool, in the order of amounts_at(), from the poses of the step before,
+  // with which what is held is at an equilibrium.
+  void prepare_response() {
+    base_tools_ = last_tools_;
+    std::vector<Eigen::VectorXd> motions;
+    for (std::size_t tool = 0; tool < base_tools_.size(); ++tool) {
+      const Vec3 centre = base_tools_[tool] ? base_tools_[tool]->position : Vec3(Vec3::Zero());
+      const auto add = [&](const std::function<Vec3(const Vec3&)>& motion_at) {
+        motions.push_back(held_.motion_of(tool, positions_, centre, motion_at));
+      };
+      for (int axis = 0; axis < 3; ++axis) {
+        add([&](const Vec3&) -> Vec3 { return Vec3::Unit(axis); });
+      }
+      for (int column = 0; column < 3; ++column) {
+        for (int row = 0; row < 3; ++row) {
+          add([&](const Vec3& offset) -> Vec3 { return offset[column] * Vec3::Unit(row); });
+        }
       }
     }
-    for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
-      if (!is_held_midpoint(i)) continue;
-      const Edge& ends = elements_.midpoints()[i];
-      const std::size_t m = body_.rest.size() + i;
-      const Vec3 middle = 0.5 * (node(positions_, ends[0]) + node(motion, ends[0]) +
-                                 node(positions_, ends[1]) + node(motion, ends[1]));
-      motion.segment<3>(static_cast<Eigen::Index>(3 * m)) = middle - node(positions_, m);
-    }
-    return motion;
+    response_.emplace(*equilibrium_, positions_, motions);
+  }
+
+  // Small strain: where the tools go decides where everything goes, and nothing is solved.
+  void superpose(const ToolPoses& tools) {
+    if (!held_.any_grip()) return;
+    if (!response_) prepare_response();
+    amounts_ = amounts_at(tools);
+    response_->superpose(amounts_, state_.positions);
+    held_.place(tools, state_.positions);
+    report_.iterations = 0;
+    report_.energy = response_->energy(amounts_);
+  }
+
+  // Of all nodes, also after a superposition.
+  Eigen::VectorXd positions_now() const {
+    return response_ ? response_->superpose(amounts_) : positions_;
   }
 
   void move(const Eigen::VectorXd& motion) {
@@ -216,22 +219,10 @@ class SolidModel : public DeformationModel {
   void take_state() {
     report_.moved_vertices = 0;
     for (std::size_t v = 0; v < body_.rest.size(); ++v) {
-      state_.positions[v] = node(positions_, v);
-      report_.moved_vertices += state_.positions[v] != node(rest_, v);
+      const auto i = static_cast<Eigen::Index>(3 * v);
+      state_.positions[v] = positions_.segment<3>(i);
+      report_.moved_vertices += state_.positions[v] != Vec3(rest_.segment<3>(i));
     }
-  }
-
-  void put_to_rest() {
-    for (Grip& grip : grips_) grip = {};
-    positions_ = rest_;
-    state_ = rest_state(body_);
-    report_ = {};
-    // Without a load, rest is the equilibrium.
-    settled_ = !gravity_;
-    regrip_ = false;
-    find_taken();
-    equilibrium_->hold(held_nodes());
-    report_.energy = equilibrium_->energy(positions_);
   }
 
   const SceneDescription& scene_;
@@ -240,14 +231,17 @@ class SolidModel : public DeformationModel {
   std::vector<Lame> lame_;
   ElasticEnergy elastic_;
   std::optional<GravityEnergy> gravity_;
-  // For each vertex whether an anchor holds it; whether an anchor or a tool does.
-  std::vector<std::uint8_t> anchored_, taken_;
+  HeldNodes held_;
+  // Of all nodes.
   Eigen::VectorXd rest_, positions_;
   State state_;
-  std::vector<Grip> grips_;
   std::unique_ptr<Equilibrium> equilibrium_;
+  // For small strain, while what the tools hold stays the same.
+  std::optional<LinearResponse> response_;
+  ToolPoses last_tools_, base_tools_;
+  Eigen::VectorXd amounts_;
   StepReport report_;
-  bool settled_ = true, regrip_ = false;
+  bool settled_ = true;
 };
 
 }  // namespace

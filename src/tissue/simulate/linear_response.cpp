@@ -1,0 +1,68 @@
+#include "linear_response.h"
+
+#include <algorithm>
+
+namespace tissue {
+namespace {
+
+// from + a·x + b·y + c·z, coordinate by coordinate; `from` and `result` may be the same.
+void add_three(const float* __restrict__ x, const float* __restrict__ y,
+               const float* __restrict__ z, float a, float b, float c, const double* from,
+               std::size_t count, double* result) {
+  for (std::size_t i = 0; i < count; ++i) {
+    result[i] = from[i] + static_cast<double>(a * x[i] + b * y[i] + c * z[i]);
+  }
+}
+
+}  // namespace
+
+LinearResponse::LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& base,
+                               const std::vector<Eigen::VectorXd>& motions)
+    : base_(base), base_energy_(equilibrium.energy(base)) {
+  const Eigen::VectorXd base_gradient = equilibrium.gradient(base);
+  const auto count = static_cast<Eigen::Index>(motions.size());
+  Eigen::MatrixXd answers(base.size(), count), forces(base.size(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    answers.col(k) = equilibrium.response(base, motions[static_cast<std::size_t>(k)]);
+    // The gradient is affine, so that its difference is the stiffness times the column.
+    forces.col(k) = equilibrium.gradient(base + answers.col(k)) - base_gradient;
+    const Eigen::VectorXf column = answers.col(k).cast<float>();
+    columns_.emplace_back(column.data(), column.data() + column.size());
+  }
+  slopes_ = answers.transpose() * base_gradient;
+  curvatures_ = answers.transpose() * forces;
+}
+
+void LinearResponse::superpose(const Eigen::VectorXd& amounts, double* positions,
+                               std::size_t count) const {
+  const double* from = base_.data();
+  for (std::size_t k = 0; k < columns_.size(); k += 3) {
+    const Eigen::Vector3f three = amounts.segment<3>(static_cast<Eigen::Index>(k)).cast<float>();
+    if (three.isZero(0.0f)) continue;
+    add_three(columns_[k].data(), columns_[k + 1].data(), columns_[k + 2].data(), three[0],
+              three[1], three[2], from, count, positions);
+    from = positions;
+  }
+  if (from != positions) std::copy(from, from + count, positions);
+}
+
+void LinearResponse::superpose(const Eigen::VectorXd& amounts, std::vector<Vec3>& positions) const {
+  superpose(amounts, positions.front().data(), 3 * positions.size());
+}
+
+Eigen::VectorXd LinearResponse::superpose(const Eigen::VectorXd& amounts) const {
+  Eigen::VectorXd positions(base_.size());
+  superpose(amounts, positions.data(), static_cast<std::size_t>(positions.size()));
+  return positions;
+}
+
+double LinearResponse::energy(const Eigen::VectorXd& amounts) const {
+  return base_energy_ + slopes_.dot(amounts) + 0.5 * amounts.dot(curvatures_ * amounts);
+}
+
+std::size_t LinearResponse::bytes() const {
+  const auto size = static_cast<std::size_t>(base_.size());
+  return size * (sizeof(double) + columns_.size() * sizeof(float));
+}
+
+}  // namespace tissue

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "tissue/simulate/equilibrium.h"
+
+namespace tissue {
+
+/// How a linear body answers when what is held moves: a superposition of columns, one for each way
+/// of moving it by a unit, computed once. A step then solves nothing.
+class LinearResponse {
+ public:
+  /// `base`: positions of all nodes at an equilibrium [m]; `motions` of held nodes, a multiple of
+  /// three.
+  LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& base,
+                 const std::vector<Eigen::VectorXd>& motions);
+
+  /// Positions of the first vertices: base + Σ amount · column. In single precision but for the
+  /// base, in one pass for each three columns whose amounts are not all zero.
+  void superpose(const Eigen::VectorXd& amounts, std::vector<Vec3>& positions) const;
+  /// The same for all nodes.
+  Eigen::VectorXd superpose(const Eigen::VectorXd& amounts) const;
+
+  /// [J]; exact, because the energy is quadratic.
+  double energy(const Eigen::VectorXd& amounts) const;
+  std::size_t bytes() const;
+
+ private:
+  void superpose(const Eigen::VectorXd& amounts, double* positions, std::size_t count) const;
+
+  Eigen::VectorXd base_;
+  std::vector<std::vector<float>> columns_;
+  // The energy at the base, and its derivatives by the amounts there.
+  double base_energy_;
+  Eigen::VectorXd slopes_;
+  Eigen::MatrixXd curvatures_;
+};
+
+}  // namespace tissue
