@@ -3,6 +3,8 @@
 #include "ros/parameters.h"
 #include "tissue/base/error.h"
 
+#include <soft_tissue_sim/BuildMesh.h>
+
 namespace tissue_ros {
 
 // From the request of BuildMesh.srv or the goal of BuildMesh.action, which have the same fields, to
@@ -68,6 +70,28 @@ tissue::MeshOptions options_from(const Request& request, const MesherNodeParamet
   options.max_tetrahedra = static_cast<std::uint64_t>(std::max(parameters.max_tetrahedra, 1));
   options.threads = parameters.threads;
   return options;
+}
+
+/// What the node asks of itself where it builds on every new volume.
+inline soft_tissue_sim::BuildMeshRequest request_from(const MesherNodeParameters& parameters) {
+  const auto natural = [](const char* name, int value) {
+    if (value >= 0) return static_cast<std::uint32_t>(value);
+    throw tissue::InputError(tissue::ErrorCode::kParam, std::string("~") + name + ": " +
+                                                            std::to_string(value) + " is negative");
+  };
+  soft_tissue_sim::BuildMeshRequest request;
+  request.use_mask = parameters.use_mask;
+  request.iso_value = parameters.iso_value;
+  request.spacing = parameters.spacing;
+  request.method = parameters.method;
+  request.target_tetrahedra = natural("target_tetrahedra", parameters.target_tetrahedra);
+  request.initial_tetrahedra = natural("initial_tetrahedra", parameters.initial_tetrahedra);
+  request.keep_interfaces = parameters.keep_interfaces;
+  request.project_boundary = parameters.project_boundary;
+  request.level_sections = natural("level_sections", parameters.level_sections);
+  request.base_level = natural("base_level", parameters.base_level);
+  request.smooth_levels = natural("smooth_levels", parameters.smooth_levels);
+  return request;
 }
 
 }  // namespace tissue_ros

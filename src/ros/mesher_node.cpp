@@ -156,7 +156,7 @@ void MesherNode::build_if_wanted() {
   Response unused;
   tissue::Run run;
   run.cancelled = node_ending_;
-  const Outcome outcome = guarded([&] { build(request_from_parameters(), unused, run); });
+  const Outcome outcome = guarded([&] { build(request_from(parameters_), unused, run); });
   if (!outcome.ok()) report("build on volume", outcome);
   // Somebody was faster: the wish stands.
   if (unused.result.code == soft_tissue_sim::Result::E_BUSY) build_wanted_ = true;
@@ -259,27 +259,6 @@ std::string MesherNode::folder() const {
     throw InputError(ErrorCode::kPath, "~folder: '" + folder.string() + "' is no folder");
   }
   return folder.string();
-}
-
-MesherNode::Request MesherNode::request_from_parameters() const {
-  const auto natural = [](const char* name, int value) {
-    if (value >= 0) return static_cast<std::uint32_t>(value);
-    throw InputError(ErrorCode::kParam,
-                     std::string("~") + name + ": " + std::to_string(value) + " is negative");
-  };
-  Request request;
-  request.use_mask = parameters_.use_mask;
-  request.iso_value = parameters_.iso_value;
-  request.spacing = parameters_.spacing;
-  request.method = parameters_.method;
-  request.target_tetrahedra = natural("target_tetrahedra", parameters_.target_tetrahedra);
-  request.initial_tetrahedra = natural("initial_tetrahedra", parameters_.initial_tetrahedra);
-  request.keep_interfaces = parameters_.keep_interfaces;
-  request.project_boundary = parameters_.project_boundary;
-  request.level_sections = natural("level_sections", parameters_.level_sections);
-  request.base_level = natural("base_level", parameters_.base_level);
-  request.smooth_levels = natural("smooth_levels", parameters_.smooth_levels);
-  return request;
 }
 
 void MesherNode::publish(const MeshPtr& built) {

@@ -56,7 +56,6 @@ class MesherNode {
   void build(const Asked& request, Answer& answer, const tissue::Run& run);
   template <class Asked>
   tissue::TetMesh mesh_for(const Asked& request, const tissue::Run& run) const;
-  Request request_from_parameters() const;
   void publish(const MeshPtr& mesh);
   std::string folder() const;
   void report(const char* what, const Outcome& outcome);
