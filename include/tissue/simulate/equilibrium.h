@@ -51,8 +51,6 @@ class Equilibrium {
   double energy(const Eigen::VectorXd& positions) const;
   /// dE/dx of all nodes; at fixed ones it is the force that holds them [N].
   Eigen::VectorXd gradient(const Eigen::VectorXd& positions) const;
-  const char* solver_name() const { return solver_->name(); }
-  std::size_t bytes() const { return hessian_.bytes(); }
 
  private:
   bool factorise(const Eigen::VectorXd& positions);

@@ -51,8 +51,6 @@ class FiniteElements {
   const std::vector<std::size_t>& incidence_begin() const { return incidence_begin_; }
   const std::vector<std::uint64_t>& incidence() const { return incidence_; }
 
-  std::size_t bytes() const;
-
  private:
   void add_midpoints(const Body& body);
   void find_incidence();

@@ -13,7 +13,6 @@ class LinearSolver {
   /// Takes the lower triangle. False if A is not positive definite, or not to working precision.
   virtual bool factorise(const Eigen::SparseMatrix<double>& lower) = 0;
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& b) const = 0;
-  virtual const char* name() const = 0;
 };
 
 /// CHOLMOD's supernodal factorisation where the package was built with it, else Eigen's own.

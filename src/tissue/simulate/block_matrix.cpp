@@ -43,11 +43,6 @@ void BlockMatrix::add(std::uint32_t a, std::uint32_t b, const Mat3& block) {
   }
 }
 
-std::size_t BlockMatrix::bytes() const {
-  return begin_.capacity() * sizeof(std::size_t) + columns_.capacity() * sizeof(std::uint32_t) +
-         blocks_.capacity() * sizeof(Mat3);
-}
-
 void BlockMatrix::multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const {
   for (std::size_t row = 0; row < node_count(); ++row) {
     const auto i = static_cast<Eigen::Index>(3 * row);

@@ -81,12 +81,4 @@ void FiniteElements::gradients(std::size_t element, const QuadraturePoint& point
   }
 }
 
-std::size_t FiniteElements::bytes() const {
-  return rest_.capacity() * sizeof(Vec3) + nodes_.capacity() * sizeof(std::uint32_t) +
-         midpoints_.capacity() * sizeof(Edge) +
-         barycentric_gradients_.capacity() * sizeof(barycentric_gradients_[0]) +
-         volumes_.capacity() * sizeof(double) + incidence_begin_.capacity() * sizeof(std::size_t) +
-         incidence_.capacity() * sizeof(std::uint64_t);
-}
-
 }  // namespace tissue

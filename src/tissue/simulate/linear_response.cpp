@@ -60,9 +60,4 @@ double LinearResponse::energy(const Eigen::VectorXd& amounts) const {
   return base_energy_ + slopes_.dot(amounts) + 0.5 * amounts.dot(curvatures_ * amounts);
 }
 
-std::size_t LinearResponse::bytes() const {
-  const auto size = static_cast<std::size_t>(base_.size());
-  return size * (sizeof(double) + columns_.size() * sizeof(float));
-}
-
 }  // namespace tissue

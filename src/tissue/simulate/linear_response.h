@@ -21,8 +21,6 @@ class LinearResponse {
 
   /// [J]; exact, because the energy is quadratic.
   double energy(const Eigen::VectorXd& amounts) const;
-  std::size_t bytes() const;
-
  private:
   void superpose(const Eigen::VectorXd& amounts, double* positions, std::size_t count) const;
 

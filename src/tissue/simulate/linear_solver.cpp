@@ -15,7 +15,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 template <class Decomposition>
 class Direct : public LinearSolver {
  public:
-  explicit Direct(const char* name) : name_(name) {
+  Direct() {
 #ifdef TISSUE_WITH_CHOLMOD
     if constexpr (kIsCholmod) decomposition_.cholmod().print = 0;
 #endif
@@ -31,7 +31,6 @@ class Direct : public LinearSolver {
     return decomposition_.info() == Eigen::Success && is_definite();
   }
   Eigen::VectorXd solve(const Eigen::VectorXd& b) const override { return decomposition_.solve(b); }
-  const char* name() const override { return name_; }
 
  private:
   static constexpr bool kIsCholmod =
@@ -47,7 +46,6 @@ class Direct : public LinearSolver {
     return true;
   }
 
-  const char* name_;
   Decomposition decomposition_;
   Eigen::Index entries_ = -1, rows_ = -1;
 };
@@ -55,12 +53,12 @@ class Direct : public LinearSolver {
 }  // namespace
 
 std::unique_ptr<LinearSolver> eigen_solver() {
-  return std::make_unique<Direct<Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>>("Eigen LDLT");
+  return std::make_unique<Direct<Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>>();
 }
 
 std::unique_ptr<LinearSolver> direct_solver() {
 #ifdef TISSUE_WITH_CHOLMOD
-  return std::make_unique<Direct<Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower>>>("CHOLMOD");
+  return std::make_unique<Direct<Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower>>>();
 #else
   return eigen_solver();
 #endif
