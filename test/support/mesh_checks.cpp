@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
+#include <utility>
 
 namespace tissue_test {
 namespace {
@@ -38,18 +38,37 @@ Triangle rotated(Triangle triangle) {
   return triangle;
 }
 
+template <class T>
+void sort_and_drop_doubles(std::vector<T>& items) {
+  std::sort(items.begin(), items.end());
+  items.erase(std::unique(items.begin(), items.end()), items.end());
+}
+
+std::size_t different_places(const TetMesh& mesh, std::size_t count) {
+  std::vector<std::array<float, 3>> places(count);
+  for (std::size_t v = 0; v < count; ++v) {
+    places[v] = {mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()};
+  }
+  sort_and_drop_doubles(places);
+  return places.size();
+}
+
 std::vector<Triangle> outward_boundary(const TetMesh& mesh, MeshFindings& findings) {
-  std::map<Triangle, std::vector<Triangle>> faces;
+  // Each face by its corners in order, beside the way its tet sees it.
+  std::vector<std::pair<Triangle, Triangle>> faces;
+  faces.reserve(4 * mesh.tets.size());
   for (const Tet& t : mesh.tets) {
     for (const Triangle& face : {Triangle{t[1], t[2], t[3]}, Triangle{t[0], t[3], t[2]},
                                  Triangle{t[0], t[1], t[3]}, Triangle{t[0], t[2], t[1]}}) {
-      faces[sorted(face)].push_back(face);
+      faces.emplace_back(sorted(face), face);
     }
   }
+  std::sort(faces.begin(), faces.end());
   std::vector<Triangle> boundary;
-  for (const auto& entry : faces) {
-    if (entry.second.size() == 1) boundary.push_back(entry.second[0]);
-    findings.faces_of_three_tets += entry.second.size() > 2;
+  for (std::size_t i = 0, end = 0; i < faces.size(); i = end) {
+    while (end < faces.size() && faces[end].first == faces[i].first) ++end;
+    if (end - i == 1) boundary.push_back(faces[i].second);
+    findings.faces_of_three_tets += end - i > 2;
   }
   return boundary;
 }
@@ -86,31 +105,32 @@ void inspect_boundary(const TetMesh& mesh, const std::vector<Triangle>& boundary
 
 MeshFindings inspect(const TetMesh& mesh) {
   MeshFindings findings;
-  std::set<std::uint32_t> used;
-  std::set<Edge> edges;
+  std::vector<bool> used(mesh.vertices.size(), false);
+  std::vector<Edge> edges;
+  edges.reserve(6 * mesh.tets.size());
   for (const Tet& t : mesh.tets) {
     std::array<Vec3, 4> x;
     for (int i = 0; i < 4; ++i) x[i] = place(mesh, t[i]);
     const double volume = (x[1] - x[0]).dot((x[2] - x[0]).cross(x[3] - x[0])) / 6.0;
     findings.not_positive += !(volume > 0.0);
     findings.tet_volume += volume;
-    used.insert(t.begin(), t.end());
+    for (const std::uint32_t vertex : t) used.at(vertex) = true;
     constexpr int pairs[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
                                  {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
     for (const auto& p : pairs) {
       const double angle = dihedral_deg(x[p[0]], x[p[1]], x[p[2]], x[p[3]]);
       findings.min_dihedral_deg = std::min(findings.min_dihedral_deg, angle);
       findings.max_dihedral_deg = std::max(findings.max_dihedral_deg, angle);
-      edges.insert({std::min(t[p[0]], t[p[1]]), std::max(t[p[0]], t[p[1]])});
+      edges.push_back({std::min(t[p[0]], t[p[1]]), std::max(t[p[0]], t[p[1]])});
     }
   }
-  findings.unused_vertices = mesh.vertices.size() - used.size();
+  findings.unused_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
+  sort_and_drop_doubles(edges);
   for (const Edge& ends : mesh.parents) {
-    findings.hanging_nodes += edges.count({std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
+    findings.hanging_nodes += std::binary_search(
+        edges.begin(), edges.end(), Edge{std::min(ends[0], ends[1]), std::max(ends[0], ends[1])});
   }
-  std::set<std::tuple<float, float, float>> places;
-  for (const tissue::Vec3f& v : mesh.vertices) places.insert({v.x(), v.y(), v.z()});
-  findings.twins = mesh.vertices.size() - places.size();
+  findings.twins = mesh.vertices.size() - different_places(mesh, mesh.vertices.size());
 
   const std::vector<Triangle> boundary = outward_boundary(mesh, findings);
   inspect_boundary(mesh, boundary, findings);
@@ -140,11 +160,7 @@ void expect_conforming(const TetMesh& mesh) {
   // Copies that share an edge have twins on all of it when it is split.
   const std::size_t copied = mesh.statistics.vertices_copied;
   const MeshFindings found = expect_sound(mesh, copied == 0 ? 0 : mesh.vertices.size());
-  std::set<std::tuple<float, float, float>> places;
-  for (std::uint32_t v = 0; v < mesh.lattice_vertices; ++v) {
-    places.insert({mesh.vertices[v].x(), mesh.vertices[v].y(), mesh.vertices[v].z()});
-  }
-  EXPECT_LE(mesh.lattice_vertices - places.size(), copied);
+  EXPECT_LE(mesh.lattice_vertices - different_places(mesh, mesh.lattice_vertices), copied);
   EXPECT_NEAR(mesh.statistics.volume, found.tet_volume, 1e-9 * found.tet_volume);
   // The statistics' angles are those of exact positions, the mesh's have been rounded to float.
   EXPECT_NEAR(mesh.statistics.dihedral[0] * 180.0 / M_PI, found.min_dihedral_deg, 0.02);
