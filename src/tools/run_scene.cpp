@@ -113,7 +113,10 @@ nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (forces[i]) reactions[scene.description().tools[i].name] = triple(*forces[i]);
   }
-  if (scene.anchor_force()) reactions["anchors"] = triple(*scene.anchor_force());
+  const std::vector<tissue::Vec3> anchors = scene.anchor_forces();
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    reactions["anchors[" + std::to_string(i) + "]"] = triple(anchors[i]);
+  }
   if (record.failed > 0) flags.push_back("NOT_CONVERGED");
   if (record.clamped) flags.push_back("CLAMPED");
   return {{"scene", scene.description().name},

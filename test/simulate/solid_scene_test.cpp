@@ -200,7 +200,7 @@ TEST(SolidScene, AnchorsOfEveryKindHoldWhatTheySay) {
   const auto held = [&](const std::string& anchors) {
     std::size_t count = 0;
     const SceneDescription scene = parse_scene("model: linear\nanchors: " + anchors);
-    for (const std::uint8_t flag : anchored_vertices(*body, scene.anchors)) count += flag;
+    for (const int anchor : anchors_of_vertices(*body, scene.anchors)) count += anchor != kNobody;
     return count;
   };
   EXPECT_EQ(held("[{plane: {axis: x, below: 0.001}}]"), 16u);

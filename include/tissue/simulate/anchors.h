@@ -42,13 +42,16 @@ struct VertexAnchor {
 /// Part of a body that does not move.
 using Anchor = std::variant<PlaneAnchor, BoxAnchor, SphereAnchor, LabelAnchor, VertexAnchor>;
 
-/// For each vertex whether one of the anchors holds it. Throws InputError E_SCENE for an anchor
-/// that holds none.
-std::vector<std::uint8_t> anchored_vertices(const Body& body, const std::vector<Anchor>& anchors);
+/// Who holds a vertex that nobody holds.
+constexpr int kNobody = -1;
+
+/// For each vertex the number of the first anchor that holds it, or kNobody. Throws InputError
+/// E_SCENE for an anchor that reaches no vertex.
+std::vector<int> anchors_of_vertices(const Body& body, const std::vector<Anchor>& anchors);
 
 /// Throws InputError E_UNCONSTRAINED unless every connected part of the body has three held
 /// vertices that do not lie on a line: without them it has no equilibrium of its own. The sentence
 /// lists the parts.
-void require_held(const Body& body, const std::vector<std::uint8_t>& held);
+void require_held(const Body& body, const std::vector<int>& holders);
 
 }  // namespace tissue

@@ -78,8 +78,8 @@ class Scene {
   std::map<std::string, std::optional<Vec3>> probes() const;
   /// Force of the tissue on each tool [N]; nothing for a model that knows none.
   std::vector<std::optional<Vec3>> tool_forces() const;
-  /// Force of the tissue on all that anchors hold [N]; nothing for a model that knows none.
-  std::optional<Vec3> anchor_force() const;
+  /// Force of the tissue on each anchor [N]; empty for a model that knows none.
+  std::vector<Vec3> anchor_forces() const;
   /// For each tet; empty for a model that knows no stress.
   std::vector<TetStrain> strains() const;
 

@@ -27,11 +27,20 @@ struct Bounds {
   }
 };
 
-// Tells for each anchor which vertices it holds.
+// Gives vertices to anchors; who comes first keeps them.
 class Holds {
  public:
-  Holds(const Body& body, std::vector<std::uint8_t>& held)
-      : body_(body), bounds_(body), held_(held) {}
+  explicit Holds(const Body& body)
+      : body_(body), bounds_(body), holders_(body.rest.size(), kNobody) {}
+
+  void take(int anchor, const Anchor& which) {
+    anchor_ = anchor;
+    if (std::visit(*this, which) == 0) {
+      throw InputError(ErrorCode::kScene,
+                       "anchors[" + std::to_string(anchor) + "]: holds no vertex of the mesh");
+    }
+  }
+  const std::vector<int>& holders() const { return holders_; }
 
   std::size_t operator()(const PlaneAnchor& anchor) {
     const double low = bounds_.low[anchor.axis], high = bounds_.high[anchor.axis];
@@ -60,12 +69,12 @@ class Holds {
   }
   std::size_t operator()(const VertexAnchor& anchor) {
     for (const std::uint32_t v : anchor.vertices) {
-      if (v >= held_.size()) {
+      if (v >= holders_.size()) {
         throw InputError(ErrorCode::kScene, "anchors: vertex " + std::to_string(v) +
                                                 " is not one of the mesh's " +
-                                                std::to_string(held_.size()));
+                                                std::to_string(holders_.size()));
       }
-      held_[v] = 1;
+      hold(v);
     }
     return anchor.vertices.size();
   }
@@ -73,17 +82,21 @@ class Holds {
  private:
   std::size_t hold_where(const std::function<bool(std::size_t)>& holds) {
     std::size_t count = 0;
-    for (std::size_t v = 0; v < held_.size(); ++v) {
+    for (std::size_t v = 0; v < holders_.size(); ++v) {
       if (!holds(v)) continue;
-      held_[v] = 1;
+      hold(v);
       ++count;
     }
     return count;
   }
+  void hold(std::size_t v) {
+    if (holders_[v] == kNobody) holders_[v] = anchor_;
+  }
 
   const Body& body_;
   Bounds bounds_;
-  std::vector<std::uint8_t>& held_;
+  std::vector<int> holders_;
+  int anchor_ = 0;
 };
 
 // Numbers the connected parts of a body, each by its lowest vertex.
@@ -126,19 +139,13 @@ class Span {
 
 }  // namespace
 
-std::vector<std::uint8_t> anchored_vertices(const Body& body, const std::vector<Anchor>& anchors) {
-  std::vector<std::uint8_t> held(body.rest.size(), 0);
-  Holds holds(body, held);
-  for (std::size_t i = 0; i < anchors.size(); ++i) {
-    if (std::visit(holds, anchors[i]) == 0) {
-      throw InputError(ErrorCode::kScene,
-                       "anchors[" + std::to_string(i) + "]: holds no vertex of the mesh");
-    }
-  }
-  return held;
+std::vector<int> anchors_of_vertices(const Body& body, const std::vector<Anchor>& anchors) {
+  Holds holds(body);
+  for (std::size_t i = 0; i < anchors.size(); ++i) holds.take(static_cast<int>(i), anchors[i]);
+  return holds.holders();
 }
 
-void require_held(const Body& body, const std::vector<std::uint8_t>& held) {
+void require_held(const Body& body, const std::vector<int>& holders) {
   const std::vector<std::uint32_t> parts = parts_of(body);
   const Bounds bounds(body);
   const double size = (bounds.high - bounds.low).norm();
@@ -146,7 +153,7 @@ void require_held(const Body& body, const std::vector<std::uint8_t>& held) {
   std::vector<std::size_t> vertices(body.rest.size(), 0);
   for (std::size_t v = 0; v < parts.size(); ++v) {
     ++vertices[parts[v]];
-    if (held[v] != 0) spans[parts[v]].add(body.rest[v].cast<double>(), size);
+    if (holders[v] != kNobody) spans[parts[v]].add(body.rest[v].cast<double>(), size);
   }
   std::string list;
   std::size_t loose = 0;

@@ -16,7 +16,7 @@ class DeformationModel {
   virtual const State& state() const = 0;
   /// What closed_form has not, because it solves no equation.
   virtual std::vector<std::optional<Vec3>> tool_forces() const { return {}; }
-  virtual std::optional<Vec3> anchor_force() const { return std::nullopt; }
+  virtual std::vector<Vec3> anchor_forces() const { return {}; }
   virtual std::vector<TetStrain> strains() const { return {}; }
 };
 

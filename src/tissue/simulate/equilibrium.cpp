@@ -10,6 +10,11 @@ namespace {
 
 constexpr double kRounding = 1e-13;
 
+// No coordinate moves farther in one iteration, by the body's extent. A body that is far from its
+// equilibrium then comes to it, not to another one farther away: without this, tissue with a
+// stiff tumour that was collapsed or turned inside out stayed entangled.
+constexpr double kLongestStep = 0.1;
+
 double extent(const Eigen::VectorXd& positions) {
   const Eigen::Map<const Eigen::Matrix3Xd> places(positions.data(), 3, positions.size() / 3);
   return (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
@@ -103,7 +108,9 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
   const double slope = gradient.dot(step);
   if (!(slope < 0.0) || !step.allFinite()) return false;
   const double before = free_part(gradient).norm();
-  for (double length = 1.0; length > 1e-10; length *= 0.5) {
+  const double farthest = step.cwiseAbs().maxCoeff();
+  const double longest = quadratic_ ? 1.0 : kLongestStep * extent(positions) / farthest;
+  for (double length = std::min(1.0, longest); length > 1e-10; length *= 0.5) {
     Eigen::VectorXd there = positions + length * step;
     const double energy_there = energy(there);
     const bool lower = energy_there <= energy_now + kArmijo * length * slope;

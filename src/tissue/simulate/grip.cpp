@@ -1,9 +1,11 @@
 #include "grip.h"
 
+#include "tissue/simulate/anchors.h"
+
 namespace tissue {
 
 bool Grip::update(const std::optional<ToolPose>& pose, const ToolDescription& tool,
-                  const std::vector<Vec3>& vertices_now, const std::vector<std::uint8_t>& taken) {
+                  const std::vector<Vec3>& vertices_now, const std::vector<int>& holders) {
   const bool closed = pose && pose->closed.value_or(true);
   const bool just_closed = closed && !was_closed_;
   was_closed_ = closed;
@@ -18,7 +20,7 @@ bool Grip::update(const std::optional<ToolPose>& pose, const ToolDescription& to
   const Eigen::Quaterniond into_tool = pose->orientation.normalized().conjugate();
   for (std::uint32_t v = 0; v < vertices_now.size(); ++v) {
     const Vec3 offset = vertices_now[v] - pose->position;
-    if (taken[v] != 0 || offset.norm() > tool.radius) continue;
+    if (holders[v] != kNobody || offset.norm() > tool.radius) continue;
     vertices_.push_back(v);
     offsets_.push_back(into_tool * offset);
   }

@@ -8,10 +8,10 @@ namespace tissue {
 /// without a jaw first touched any), as if they were part of it.
 class Grip {
  public:
-  /// Takes hold, keeps it or lets go. True if that changed what is held. Vertices for which `taken`
-  /// is set are held by others.
+  /// Takes hold, keeps it or lets go. True if that changed what is held. Vertices
+  /// that have a holder already stay with it.
   bool update(const std::optional<ToolPose>& pose, const ToolDescription& tool,
-              const std::vector<Vec3>& vertices_now, const std::vector<std::uint8_t>& taken);
+              const std::vector<Vec3>& vertices_now, const std::vector<int>& holders);
 
   const std::vector<std::uint32_t>& vertices() const { return vertices_; }
   /// Where the tool at `pose` takes the k-th of them.

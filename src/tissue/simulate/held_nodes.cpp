@@ -1,5 +1,7 @@
 #include "held_nodes.h"
 
+#include "tissue/simulate/anchors.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -13,27 +15,28 @@ Vec3 node(const Eigen::VectorXd& all, std::size_t i) {
 }  // namespace
 
 HeldNodes::HeldNodes(const FiniteElements& elements, const std::vector<ToolDescription>& tools,
-                     std::vector<std::uint8_t> anchored)
+                     std::size_t anchor_count, std::vector<int> anchor_of_vertex)
     : elements_(elements),
       tools_(tools),
       grips_(tools.size()),
-      anchored_(std::move(anchored)),
-      taken_(anchored_) {}
+      anchor_count_(anchor_count),
+      anchor_of_vertex_(std::move(anchor_of_vertex)),
+      holders_(anchor_of_vertex_) {}
 
 bool HeldNodes::update(const ToolPoses& tools, const std::vector<Vec3>& vertices_now) {
   bool changed = false;
   for (std::size_t i = 0; i < grips_.size(); ++i) {
-    if (!grips_[i].update(tools[i], tools_[i], vertices_now, taken_)) continue;
+    if (!grips_[i].update(tools[i], tools_[i], vertices_now, holders_)) continue;
     changed = true;
     // The next tool takes what is left.
-    find_taken();
+    find_holders();
   }
   return changed;
 }
 
 void HeldNodes::release() {
   for (Grip& grip : grips_) grip = {};
-  find_taken();
+  find_holders();
 }
 
 bool HeldNodes::any_grip() const {
@@ -41,20 +44,23 @@ bool HeldNodes::any_grip() const {
                      [](const Grip& grip) { return !grip.vertices().empty(); });
 }
 
-void HeldNodes::find_taken() {
-  taken_ = anchored_;
-  for (const Grip& grip : grips_) {
-    for (const std::uint32_t v : grip.vertices()) taken_[v] = 1;
+void HeldNodes::find_holders() {
+  holders_ = anchor_of_vertex_;
+  for (std::size_t i = 0; i < grips_.size(); ++i) {
+    for (const std::uint32_t v : grips_[i].vertices()) {
+      holders_[v] = static_cast<int>(anchor_count_ + i);
+    }
   }
 }
 
 bool HeldNodes::is_held_midpoint(std::size_t midpoint) const {
   const Edge& ends = elements_.midpoints()[midpoint];
-  return taken_[ends[0]] != 0 && taken_[ends[1]] != 0;
+  return holders_[ends[0]] != kNobody && holders_[ends[1]] != kNobody;
 }
 
 std::vector<std::uint8_t> HeldNodes::flags() const {
-  std::vector<std::uint8_t> flags = taken_;
+  std::vector<std::uint8_t> flags;
+  for (const int holder : holders_) flags.push_back(holder != kNobody);
   for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
     flags.push_back(is_held_midpoint(i));
   }
@@ -73,7 +79,7 @@ Eigen::VectorXd HeldNodes::motion_to(const ToolPoses& tools,
   for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
     if (!is_held_midpoint(i)) continue;
     const Edge& ends = elements_.midpoints()[i];
-    const std::size_t middle = taken_.size() + i;
+    const std::size_t middle = holders_.size() + i;
     const Vec3 place = 0.5 * (node(positions, ends[0]) + node(motion, ends[0]) +
                               node(positions, ends[1]) + node(motion, ends[1]));
     motion.segment<3>(static_cast<Eigen::Index>(3 * middle)) = place - node(positions, middle);
@@ -91,7 +97,7 @@ Eigen::VectorXd HeldNodes::motion_of(std::size_t tool, const Eigen::VectorXd& po
   for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
     if (!is_held_midpoint(i)) continue;
     const Edge& ends = elements_.midpoints()[i];
-    motion.segment<3>(static_cast<Eigen::Index>(3 * (taken_.size() + i))) =
+    motion.segment<3>(static_cast<Eigen::Index>(3 * (holders_.size() + i))) =
         0.5 * (node(motion, ends[0]) + node(motion, ends[1]));
   }
   return motion;
@@ -105,30 +111,19 @@ void HeldNodes::place(const ToolPoses& tools, std::vector<Vec3>& vertices) const
   }
 }
 
-Vec3 HeldNodes::force_on(const std::vector<std::uint8_t>& vertices,
-                         const Eigen::VectorXd& gradient) const {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    if (vertices[v] != 0) sum -= node(gradient, v);
+std::vector<Vec3> HeldNodes::forces(const Eigen::VectorXd& gradient) const {
+  std::vector<Vec3> result(anchor_count_ + grips_.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < holders_.size(); ++v) {
+    if (holders_[v] != kNobody) result[static_cast<std::size_t>(holders_[v])] -= node(gradient, v);
   }
   for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
-    const Edge& ends = elements_.midpoints()[i];
     if (!is_held_midpoint(i)) continue;
     // Between two holders, each bears half.
-    const int shares = (vertices[ends[0]] != 0) + (vertices[ends[1]] != 0);
-    sum -= 0.5 * shares * node(gradient, vertices.size() + i);
+    for (const std::uint32_t end : elements_.midpoints()[i]) {
+      result[static_cast<std::size_t>(holders_[end])] -= 0.5 * node(gradient, holders_.size() + i);
+    }
   }
-  return sum;
-}
-
-Vec3 HeldNodes::force_on_tool(std::size_t tool, const Eigen::VectorXd& gradient) const {
-  std::vector<std::uint8_t> held(taken_.size(), 0);
-  for (const std::uint32_t v : grips_[tool].vertices()) held[v] = 1;
-  return force_on(held, gradient);
-}
-
-Vec3 HeldNodes::force_on_anchors(const Eigen::VectorXd& gradient) const {
-  return force_on(anchored_, gradient);
+  return result;
 }
 
 }  // namespace tissue

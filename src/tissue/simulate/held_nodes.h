@@ -11,9 +11,9 @@ namespace tissue {
 /// the midpoints between two such.
 class HeldNodes {
  public:
-  /// References must outlive this. `anchored` has a flag for each vertex.
+  /// References must outlive this. `anchor_of_vertex` as anchors_of_vertices() gives it.
   HeldNodes(const FiniteElements& elements, const std::vector<ToolDescription>& tools,
-            std::vector<std::uint8_t> anchored);
+            std::size_t anchor_count, std::vector<int> anchor_of_vertex);
 
   /// Tools take hold or let go. True if that changed what is held.
   bool update(const ToolPoses& tools, const std::vector<Vec3>& vertices_now);
@@ -32,20 +32,20 @@ class HeldNodes {
   /// Puts the vertices that tools hold exactly where they belong.
   void place(const ToolPoses& tools, std::vector<Vec3>& vertices) const;
 
-  /// Minus the sum of dE/dx over what a tool, or all anchors, hold: the tissue's force on it [N].
-  Vec3 force_on_tool(std::size_t tool, const Eigen::VectorXd& gradient) const;
-  Vec3 force_on_anchors(const Eigen::VectorXd& gradient) const;
+  /// Minus the sum of dE/dx over what each holder holds, anchors first, then tools: the tissue's
+  /// force on it [N].
+  std::vector<Vec3> forces(const Eigen::VectorXd& gradient) const;
 
  private:
   bool is_held_midpoint(std::size_t midpoint) const;
-  void find_taken();
-  Vec3 force_on(const std::vector<std::uint8_t>& vertices, const Eigen::VectorXd& gradient) const;
+  void find_holders();
 
   const FiniteElements& elements_;
   const std::vector<ToolDescription>& tools_;
   std::vector<Grip> grips_;
-  // For each vertex whether an anchor holds it; whether an anchor or a tool does.
-  std::vector<std::uint8_t> anchored_, taken_;
+  std::size_t anchor_count_;
+  // Who holds each vertex: an anchor; an anchor or (counted on) a tool.
+  std::vector<int> anchor_of_vertex_, holders_;
 };
 
 }  // namespace tissue

@@ -21,6 +21,7 @@ class LinearResponse {
 
   /// [J]; exact, because the energy is quadratic.
   double energy(const Eigen::VectorXd& amounts) const;
+
  private:
   void superpose(const Eigen::VectorXd& amounts, double* positions, std::size_t count) const;
 

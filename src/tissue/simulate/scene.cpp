@@ -84,7 +84,7 @@ std::vector<std::optional<Vec3>> Scene::tool_forces() const {
   forces.resize(description().tools.size());
   return forces;
 }
-std::optional<Vec3> Scene::anchor_force() const { return implementation_->model->anchor_force(); }
+std::vector<Vec3> Scene::anchor_forces() const { return implementation_->model->anchor_forces(); }
 std::vector<TetStrain> Scene::strains() const { return implementation_->model->strains(); }
 
 }  // namespace tissue

@@ -47,7 +47,7 @@ class SolidModel : public DeformationModel {
         elements_(body, scene.element_order),
         lame_(lame_with_cost(scene, body, costs)),
         elastic_(elements_, lame_, constitution_of(scene.model), run_on(threads)),
-        held_(elements_, scene.tools, held_vertices(body, scene.anchors)),
+        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene.anchors)),
         rest_(rest_positions(elements_)),
         positions_(rest_) {
     std::vector<const Energy*> energies = {&elastic_};
@@ -94,16 +94,14 @@ class SolidModel : public DeformationModel {
   const State& state() const override { return state_; }
 
   std::vector<std::optional<Vec3>> tool_forces() const override {
-    const Eigen::VectorXd gradient = equilibrium_->gradient(positions_now());
-    std::vector<std::optional<Vec3>> forces;
-    for (std::size_t i = 0; i < scene_.tools.size(); ++i) {
-      forces.emplace_back(held_.force_on_tool(i, gradient));
-    }
-    return forces;
+    const std::vector<Vec3> all = forces_on_holders();
+    return {all.begin() + static_cast<std::ptrdiff_t>(scene_.anchors.size()), all.end()};
   }
 
-  std::optional<Vec3> anchor_force() const override {
-    return held_.force_on_anchors(equilibrium_->gradient(positions_now()));
+  std::vector<Vec3> anchor_forces() const override {
+    std::vector<Vec3> forces = forces_on_holders();
+    forces.resize(scene_.anchors.size());
+    return forces;
   }
 
   std::vector<TetStrain> strains() const override {
@@ -130,11 +128,14 @@ class SolidModel : public DeformationModel {
     return result;
   }
 
-  static std::vector<std::uint8_t> held_vertices(const Body& body,
-                                                 const std::vector<Anchor>& anchors) {
-    std::vector<std::uint8_t> held = anchored_vertices(body, anchors);
-    require_held(body, held);
-    return held;
+  static std::vector<int> held_by_anchors(const Body& body, const std::vector<Anchor>& anchors) {
+    std::vector<int> holders = anchors_of_vertices(body, anchors);
+    require_held(body, holders);
+    return holders;
+  }
+
+  std::vector<Vec3> forces_on_holders() const {
+    return held_.forces(equilibrium_->gradient(positions_now()));
   }
 
   // How each tool has moved since the base: its translation, then R − I column by column.

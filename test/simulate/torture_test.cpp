@@ -1,0 +1,227 @@
+// Shapes that no tissue ever has, contrasts and ratios that no solver likes.
+#include "support/bodies.h"
+#include "support/problem.h"
+
+#include <random>
+
+namespace {
+
+using namespace tissue;
+using tissue_test::nodes_where;
+using tissue_test::Problem;
+
+constexpr double kSize = 0.04;
+
+// A block, or a density-refined ball, with a tumour in the middle; its lowest part is held.
+struct Subject {
+  const char* name;
+  Body body;
+  double held_below;
+};
+
+std::vector<Subject> subjects() {
+  Body block = tissue_test::kuhn_block({4, 4, 4}, Vec3::Constant(kSize));
+  for (std::size_t t = 0; t < block.tets.size(); ++t) {
+    Vec3 centroid = Vec3::Zero();
+    for (const std::uint32_t v : block.tets[t]) centroid += 0.25 * block.rest[v].cast<double>();
+    if ((centroid - Vec3::Constant(0.5 * kSize)).norm() < 0.3 * kSize)
+      block.tet_densities[t] = 2.0f;
+  }
+  return {{"block", block, 1e-7},
+          {"refined ball",
+           tissue_test::ball_body(tissue_test::refined_ball(0.015, 2), 0.010, 2.0f, 1.0f), -0.018}};
+}
+
+struct Tissue {
+  double contrast, poisson;
+  Material material() const { return {{{1.0, 1e4}, {2.0, 1e4 * contrast}}, poisson, 1000.0}; }
+};
+
+// How a body that was thrown into some shape came to rest.
+struct Recovery {
+  EquilibriumReport report;
+  bool finite = false, energy_fell = false;
+  std::size_t inverted = 0;
+  // Largest distance from rest, by the body's size.
+  double error = 0.0;
+};
+
+Recovery recover(const Subject& subject, const Tissue& tissue,
+                 const std::function<Vec3(const Vec3&)>& thrown, int iterations = 100) {
+  Problem problem(subject.body, 1, Constitution::kNeoHookean, tissue.material());
+  const std::vector<Vec3>& rest = problem.elements.rest();
+  const auto held = nodes_where(rest, [&](const Vec3& p) { return p.z() < subject.held_below; });
+  for (std::size_t node = 0; node < rest.size(); ++node) {
+    if (held[node] == 0) problem.move(node, thrown(rest[node]) - rest[node]);
+  }
+  Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), direct_solver());
+  equilibrium.hold(held);
+  // From step to step the energy never rises.
+  Recovery result;
+  double energy = equilibrium.energy(problem.positions);
+  result.energy_fell = true;
+  for (int done = 0; done < iterations && !result.report.converged; done += 20) {
+    result.report = equilibrium.solve(problem.positions, {1e-9, 20});
+    result.energy_fell =
+        result.energy_fell && result.report.energy <= energy + 1e-9 * std::abs(energy);
+    energy = result.report.energy;
+  }
+  result.finite = problem.positions.allFinite();
+  State state = rest_state(problem.body);
+  for (std::size_t v = 0; v < state.positions.size(); ++v) {
+    state.positions[v] += problem.displacement(v);
+    result.error = std::max(result.error, problem.displacement(v).norm() / kSize);
+  }
+  result.inverted = deformation_quality(problem.body, state).inverted;
+  return result;
+}
+
+std::string labelled(const Subject& subject, const Tissue& tissue) {
+  return std::string(subject.name) + ", contrast " + std::to_string(tissue.contrast) +
+         ", Poisson's ratio " + std::to_string(tissue.poisson);
+}
+
+template <class Check>
+void for_each_case(const Check& check) {
+  for (const Subject& subject : subjects()) {
+    for (const double contrast : {1.0, 1e2, 1e4}) {
+      for (const double poisson : {0.3, 0.45, 0.49}) {
+        const Tissue tissue = {contrast, poisson};
+        SCOPED_TRACE(labelled(subject, tissue));
+        check(subject, tissue);
+      }
+    }
+  }
+}
+
+constexpr double kAnywhere = 1e9;
+
+// Back at rest within `error`, or anywhere: finite and lower in energy in any case.
+void expect_rest(const Recovery& found, double error) {
+  EXPECT_TRUE(found.finite);
+  EXPECT_TRUE(found.energy_fell);
+  EXPECT_LE(found.error, error);
+  if (error < kAnywhere) {
+    EXPECT_EQ(found.inverted, 0u);
+  }
+}
+
+TEST(Torture, T4_AFlattenedBodyComesBackAtAnyContrast) {
+  for_each_case([](const Subject& subject, const Tissue& tissue) {
+    const auto flattened = [&](const Vec3& p) { return Vec3(p.x(), p.y(), subject.held_below); };
+    expect_rest(recover(subject, tissue, flattened), 1e-4);
+  });
+}
+
+// With more contrast than that it may stay entangled, and nobody promises otherwise.
+TEST(Torture, T5_ABodyCollapsedToAPointStaysFiniteAndComesBackAtContrastsToAHundred) {
+  for_each_case([](const Subject& subject, const Tissue& tissue) {
+    expect_rest(
+        recover(subject, tissue, [&](const Vec3&) { return Vec3(0.01, 0.01, subject.held_below); }),
+        tissue.contrast <= 1e2 ? 1e-6 : kAnywhere);
+  });
+}
+
+TEST(Torture, T6_ABodyTurnedInsideOutStaysFiniteAndComesBackAtContrastsToAHundred) {
+  for_each_case([](const Subject& subject, const Tissue& tissue) {
+    const auto reflected = [&](const Vec3& p) {
+      return Vec3(p.x(), p.y(), 2.0 * subject.held_below - p.z());
+    };
+    expect_rest(recover(subject, tissue, reflected), tissue.contrast <= 1e2 ? 1e-5 : kAnywhere);
+  });
+}
+
+// Back to rest it may not come, and nobody promises it: reset() is for that.
+TEST(Torture, T7_AScrambledBodyStaysFiniteAndItsEnergyFalls) {
+  for_each_case([](const Subject& subject, const Tissue& tissue) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> within(0.0, kSize);
+    const auto scrambled = [&](const Vec3&) {
+      return Vec3(within(random), within(random), within(random));
+    };
+    expect_rest(recover(subject, tissue, scrambled, 20), kAnywhere);
+  });
+}
+
+// A stiff layer in a soft block, sheared: whatever the contrast and Poisson's ratio, what the
+// factorisation answers balances the forces.
+TEST(Torture, T13_LinearSolvesHoldTheirResidual) {
+  for (const auto& make_solver : {direct_solver, eigen_solver}) {
+    for (const double contrast : {1.0, 1e2, 1e4, 1e6}) {
+      for (const double poisson : {0.45, 0.49, 0.4999}) {
+        const Tissue tissue = {contrast, poisson};
+        for (const Subject& subject : subjects()) {
+          SCOPED_TRACE(labelled(subject, tissue));
+          Problem problem(subject.body, 1, Constitution::kLinear, tissue.material());
+          const std::vector<Vec3>& rest = problem.elements.rest();
+          auto held = nodes_where(rest, [&](const Vec3& p) { return p.z() < subject.held_below; });
+          const double top = 0.8 * rest.back().z();
+          for (std::size_t node = 0; node < rest.size(); ++node) {
+            if (rest[node].z() < top) continue;
+            held[node] = 1;
+            problem.move(node, Vec3(0.002, 0.0, 0.001));
+          }
+          Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), make_solver(),
+                                  true);
+          equilibrium.hold(held);
+          const EquilibriumReport report = equilibrium.solve(problem.positions, {1e-6, 5});
+          EXPECT_TRUE(report.converged) << report.residual;
+          EXPECT_LE(report.residual, 1e-6);
+        }
+      }
+    }
+  }
+}
+
+// Pressed together by a tenth between plates that do not let it slip: the force, and the part of
+// the volume that is lost.
+struct Pressed {
+  double force, volume_lost;
+};
+Pressed pressed(int cells, int order, double poisson) {
+  Problem problem(tissue_test::kuhn_block({cells, cells, cells}, Vec3::Constant(kSize)), order,
+                  Constitution::kNeoHookean, {{{0.0, 1e4}}, poisson, 1000.0});
+  const std::vector<Vec3>& rest = problem.elements.rest();
+  const auto held =
+      nodes_where(rest, [](const Vec3& p) { return p.z() < 1e-7 || p.z() > kSize - 1e-7; });
+  for (std::size_t node = 0; node < rest.size(); ++node) {
+    if (rest[node].z() > kSize - 1e-7) problem.move(node, Vec3(0.0, 0.0, -0.1 * kSize));
+  }
+  const EquilibriumReport report = problem.solve(held, nullptr, 1e-3);
+  EXPECT_TRUE(report.converged) << report.residual;
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(problem.positions.size());
+  problem.energy.add_gradient(problem.positions, gradient);
+  Pressed result = {0.0, 0.0};
+  for (std::size_t node = 0; node < rest.size(); ++node) {
+    if (rest[node].z() < 1e-7) result.force += gradient[static_cast<Eigen::Index>(3 * node + 2)];
+  }
+  // The volume of straight-edged tets at order 1; at order 2 that of the deformed elements.
+  for (std::size_t e = 0; e < problem.elements.element_count(); ++e) {
+    for (const QuadraturePoint& point : problem.elements.quadrature()) {
+      const Mat3 f = problem.energy.deformation_gradient(e, point, problem.positions);
+      result.volume_lost += point.weight * problem.elements.volume(e) * (1.0 - f.determinant());
+    }
+  }
+  result.volume_lost /= kSize * kSize * kSize;
+  return result;
+}
+
+// Linear tets lock where tissue keeps its volume; what that costs is stated, not hidden.
+TEST(Torture, T17_LinearTetsLockAndTheirExcessIsMeasured) {
+  for (const double poisson : {0.49, 0.4999}) {
+    const Pressed linear = pressed(6, 1, poisson), quadratic = pressed(3, 2, poisson),
+                  finer = pressed(6, 2, poisson);
+    std::printf(
+        "Poisson's ratio %g: linear tets %.2f times as stiff as quadratic ones, which with "
+        "as many nodes are %.2f times as stiff; volume lost %.2g and %.2g\n",
+        poisson, linear.force / finer.force, quadratic.force / finer.force, linear.volume_lost,
+        finer.volume_lost);
+    EXPECT_GT(linear.force, 1.2 * finer.force);
+    EXPECT_NEAR(quadratic.force, finer.force, 0.1 * finer.force);
+    // Of a tenth that it was pressed together, hardly anything is lost in volume.
+    EXPECT_LT(std::abs(finer.volume_lost), 0.01);
+    EXPECT_LT(std::abs(linear.volume_lost), 0.01);
+  }
+}
+
+}  // namespace
