@@ -76,6 +76,8 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
         display_mesh(mesh, section_from(parameters_.section_axis, parameters_.section_at),
                      static_cast<std::size_t>(std::max(parameters_.marker_max_triangles, 0)));
     tissue::Scene scene(scene_, std::move(body));
+    // A solid takes its weight before any tool comes.
+    last_step_ = scene.step(tissue::ToolPoses(scene_.tools.size()), 0.0);
     simulation_.emplace(
         Simulation{std::move(mesh), std::move(levels), std::move(display), std::move(scene)});
   });
@@ -86,8 +88,6 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
     return;
   }
   lose_tools();
-  stepped_ = false;
-  last_step_ = {};
   step_seconds_ = 0.0;
   markers_are_new_ = true;
   ROS_INFO("deformer_node: took mesh %s of %zu tets", simulation_->mesh.uuid.c_str(),
@@ -122,6 +122,7 @@ void DeformerNode::move_to(std::size_t tool, const geometry_msgs::PoseStamped& p
   const ros::Duration behind = stamp_ - pose.header.stamp;
   if (behind > ros::Duration(tools_.size() > 1 ? parameters_.tool_timeout : 0.0)) {
     simulation_->scene.reset();
+    simulation_->scene.step(tissue::ToolPoses(tools_.size()), 0.0);
     time_jumped_ = true;
     lose_tools();
     stamp_ = pose.header.stamp;
@@ -161,10 +162,7 @@ void DeformerNode::watch_tool() {
     tools_[i].reset();
     silent = true;
   }
-  // A scene without tools still has its weight.
-  const bool never_stepped = !stepped_ && tools_.empty();
-  if (!silent && !never_stepped && (has_a_tool() || !simulation_->scene.recovering())) return;
-  stepped_ = true;
+  if (!silent && (has_a_tool() || !simulation_->scene.recovering())) return;
   // The first step without a tool lets go; the others relax.
   last_step_ = simulation_->scene.step(tools_, 1.0 / parameters_.cloud_rate);
 }
@@ -187,10 +185,9 @@ void DeformerNode::publish_markers() {
       simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return positions[v]; }, frame);
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const tissue::ToolDescription& tool = scene_.tools[i];
-    // The one tool of most scenes has had this name from the start.
-    const std::string name = tools_.size() == 1 ? "tool" : tool.name;
-    markers.markers.push_back(ball_marker(
-        name, tools_[i] ? tools_[i]->position : tissue::Vec3::Zero(), tool.radius, 1.0f, frame));
+    markers.markers.push_back(ball_marker(tool.name,
+                                          tools_[i] ? tools_[i]->position : tissue::Vec3::Zero(),
+                                          tool.radius, 1.0f, frame));
     if (!tools_[i]) markers.markers.back().action = visualization_msgs::Marker::DELETE;
   }
   marker_publisher_.publish(markers_are_new_ ? replacing_all(markers) : markers);

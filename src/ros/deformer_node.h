@@ -56,7 +56,6 @@ class DeformerNode {
   tissue::ToolPoses tools_;
   std::vector<ros::WallTime> heard_;
   ros::Time stamp_;
-  bool stepped_ = false;
   tissue::StepReport last_step_;
   double step_seconds_ = 0.0;
   bool time_jumped_ = false;
