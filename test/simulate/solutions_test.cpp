@@ -1,5 +1,6 @@
 // Finite elements on meshes from the mesher, and on published problems.
 #include "support/bodies.h"
+#include "support/known_solutions.h"
 #include "support/problem.h"
 #include "support/shapes.h"
 #include "tissue/refine/build_mesh.h"
@@ -12,57 +13,11 @@ using tissue_test::kuhn_block;
 using tissue_test::nodes_where;
 using tissue_test::Problem;
 
-// Displacement of the tumour sphere of FACTS.md: a ball of radius a in one of radius b whose
-// surface moves out by U.
-struct TumourSphere {
-  double inner, a, b;
-  TumourSphere(double radius, double outer_radius, double moved, const Lame& tissue,
-               const Lame& tumour) {
-    const double k_m = tissue.lambda + 2.0 / 3.0 * tissue.mu;
-    const double k_i = tumour.lambda + 2.0 / 3.0 * tumour.mu;
-    const double cube = radius * radius * radius;
-    // e = A + B/a³ and 3 K_i e = 3 K_m A − 4 μ_m B/a³ and A b + B/b² = U.
-    const double ratio = 3.0 * (k_m - k_i) / (3.0 * k_i + 4.0 * tissue.mu);
-    a = moved / (outer_radius + ratio * cube / (outer_radius * outer_radius));
-    b = ratio * cube * a;
-    inner = a + b / cube;
-  }
-};
-
-// Relative L2 error of the displacement over the nodes of a tumour sphere.
-double tumour_sphere_error(const TetMesh& mesh, int order) {
-  constexpr double kRadius = 0.010, kMoved = 1e-4;
-  Body body = tissue_test::ball_body(mesh, kRadius, 255.0f, 60.0f);
-  double outer = 0.0;
-  for (const Triangle& triangle : body.surface) {
-    for (const std::uint32_t v : triangle) outer += body.rest[v].cast<double>().norm();
-  }
-  outer /= 3.0 * static_cast<double>(body.surface.size());
-  const Material material = {{{60.0, 3e3}, {255.0, 6e4}}, 0.3, 1000.0};
-  Problem problem(std::move(body), order, Constitution::kLinear, material);
-  const TumourSphere exact(kRadius, outer, kMoved, lame_of(3e3, 0.3), lame_of(6e4, 0.3));
-  const auto expected = [&](const Vec3& place) -> Vec3 {
-    const double r = place.norm();
-    return r < kRadius ? Vec3(exact.inner * place)
-                       : Vec3((exact.a + exact.b / (r * r * r)) * place);
-  };
-  const std::vector<std::uint8_t> held = boundary_nodes(problem);
-  for (std::size_t node = 0; node < held.size(); ++node) {
-    if (held[node] != 0) problem.move(node, expected(problem.elements.rest()[node]));
-  }
-  EXPECT_TRUE(problem.solve(held).converged);
-  double squares = 0.0, all = 0.0;
-  for (std::size_t node = 0; node < held.size(); ++node) {
-    const Vec3 wanted = expected(problem.elements.rest()[node]);
-    squares += (problem.displacement(node) - wanted).squaredNorm();
-    all += wanted.squaredNorm();
-  }
-  return std::sqrt(squares / all);
-}
-
 TEST(Solutions, TumourSphereOnDensityRefinedMeshesComesNearerAsTheyGetFiner) {
-  const double coarse = tumour_sphere_error(tissue_test::refined_ball(0.020), 1);
-  const double fine = tumour_sphere_error(tissue_test::refined_ball(0.010), 1);
+  const double coarse =
+      tissue_test::tumour_sphere_error(tissue_test::refined_ball(0.020), 1, Constitution::kLinear);
+  const double fine =
+      tissue_test::tumour_sphere_error(tissue_test::refined_ball(0.010), 1, Constitution::kLinear);
   EXPECT_LT(fine, coarse / 1.8);
 }
 

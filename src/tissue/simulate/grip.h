@@ -14,9 +14,13 @@ class Grip {
               const std::vector<Vec3>& vertices_now, const std::vector<int>& holders);
 
   const std::vector<std::uint32_t>& vertices() const { return vertices_; }
-  /// Where the tool at `pose` takes the k-th of them.
-  Vec3 place(std::size_t k, const ToolPose& pose) const {
-    return pose.position + pose.orientation.normalized() * offsets_[k];
+  /// Calls body(vertex, place) for each of them with where the tool at `pose` takes it.
+  template <class Body>
+  void for_each_place(const ToolPose& pose, const Body& body) const {
+    const Mat3 turn = pose.orientation.normalized().toRotationMatrix();
+    for (std::size_t k = 0; k < vertices_.size(); ++k) {
+      body(vertices_[k], Vec3(pose.position + turn * offsets_[k]));
+    }
   }
 
  private:

@@ -71,10 +71,10 @@ Eigen::VectorXd HeldNodes::motion_to(const ToolPoses& tools,
                                      const Eigen::VectorXd& positions) const {
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(positions.size());
   for (std::size_t i = 0; i < grips_.size(); ++i) {
-    for (std::size_t k = 0; tools[i] && k < grips_[i].vertices().size(); ++k) {
-      const std::uint32_t v = grips_[i].vertices()[k];
-      motion.segment<3>(3 * Eigen::Index{v}) = grips_[i].place(k, *tools[i]) - node(positions, v);
-    }
+    if (!tools[i]) continue;
+    grips_[i].for_each_place(*tools[i], [&](std::uint32_t v, const Vec3& place) {
+      motion.segment<3>(3 * Eigen::Index{v}) = place - node(positions, v);
+    });
   }
   for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
     if (!is_held_midpoint(i)) continue;
@@ -105,9 +105,9 @@ Eigen::VectorXd HeldNodes::motion_of(std::size_t tool, const Eigen::VectorXd& po
 
 void HeldNodes::place(const ToolPoses& tools, std::vector<Vec3>& vertices) const {
   for (std::size_t i = 0; i < grips_.size(); ++i) {
-    for (std::size_t k = 0; tools[i] && k < grips_[i].vertices().size(); ++k) {
-      vertices[grips_[i].vertices()[k]] = grips_[i].place(k, *tools[i]);
-    }
+    if (!tools[i]) continue;
+    grips_[i].for_each_place(*tools[i],
+                             [&](std::uint32_t v, const Vec3& place) { vertices[v] = place; });
   }
 }
 

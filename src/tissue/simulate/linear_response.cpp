@@ -5,12 +5,13 @@
 namespace tissue {
 namespace {
 
-// from + a·x + b·y + c·z, coordinate by coordinate; `from` and `result` may be the same.
+// from + a·x + b·y + c·z, coordinate by coordinate.
+template <class From>
 void add_three(const float* __restrict__ x, const float* __restrict__ y,
-               const float* __restrict__ z, float a, float b, float c, const double* from,
+               const float* __restrict__ z, float a, float b, float c, const From* from,
                std::size_t count, double* result) {
   for (std::size_t i = 0; i < count; ++i) {
-    result[i] = from[i] + static_cast<double>(a * x[i] + b * y[i] + c * z[i]);
+    result[i] = static_cast<double>(from[i]) + static_cast<double>(a * x[i] + b * y[i] + c * z[i]);
   }
 }
 
@@ -18,7 +19,9 @@ void add_three(const float* __restrict__ x, const float* __restrict__ y,
 
 LinearResponse::LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& base,
                                const std::vector<Eigen::VectorXd>& motions)
-    : base_(base), base_energy_(equilibrium.energy(base)) {
+    : base_(base),
+      float_base_(base.data(), base.data() + base.size()),
+      base_energy_(equilibrium.energy(base)) {
   const Eigen::VectorXd base_gradient = equilibrium.gradient(base);
   const auto count = static_cast<Eigen::Index>(motions.size());
   Eigen::MatrixXd answers(base.size(), count), forces(base.size(), count);
@@ -33,26 +36,30 @@ LinearResponse::LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& 
   curvatures_ = answers.transpose() * forces;
 }
 
-void LinearResponse::superpose(const Eigen::VectorXd& amounts, double* positions,
+template <class From>
+void LinearResponse::superpose(const Eigen::VectorXd& amounts, const From* base, double* positions,
                                std::size_t count) const {
-  const double* from = base_.data();
+  bool first = true;
   for (std::size_t k = 0; k < columns_.size(); k += 3) {
     const Eigen::Vector3f three = amounts.segment<3>(static_cast<Eigen::Index>(k)).cast<float>();
     if (three.isZero(0.0f)) continue;
-    add_three(columns_[k].data(), columns_[k + 1].data(), columns_[k + 2].data(), three[0],
-              three[1], three[2], from, count, positions);
-    from = positions;
+    const auto add_to = [&](const auto* from) {
+      add_three(columns_[k].data(), columns_[k + 1].data(), columns_[k + 2].data(), three[0],
+                three[1], three[2], from, count, positions);
+    };
+    first ? add_to(base) : add_to(positions);
+    first = false;
   }
-  if (from != positions) std::copy(from, from + count, positions);
+  if (first) std::copy(base_.data(), base_.data() + count, positions);
 }
 
 void LinearResponse::superpose(const Eigen::VectorXd& amounts, std::vector<Vec3>& positions) const {
-  superpose(amounts, positions.front().data(), 3 * positions.size());
+  superpose(amounts, float_base_.data(), positions.front().data(), 3 * positions.size());
 }
 
 Eigen::VectorXd LinearResponse::superpose(const Eigen::VectorXd& amounts) const {
   Eigen::VectorXd positions(base_.size());
-  superpose(amounts, positions.data(), static_cast<std::size_t>(positions.size()));
+  superpose(amounts, base_.data(), positions.data(), static_cast<std::size_t>(positions.size()));
   return positions;
 }
 

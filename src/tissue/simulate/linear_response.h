@@ -13,19 +13,23 @@ class LinearResponse {
   LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& base,
                  const std::vector<Eigen::VectorXd>& motions);
 
-  /// Positions of the first vertices: base + Σ amount · column. In single precision but for the
-  /// base, in one pass for each three columns whose amounts are not all zero.
+  /// Positions of the first vertices: base + Σ amount · column. In single precision, unless all
+  /// amounts are zero, in one pass for each three columns whose amounts are not: reading it all
+  /// takes longer than adding it up.
   void superpose(const Eigen::VectorXd& amounts, std::vector<Vec3>& positions) const;
-  /// The same for all nodes.
+  /// The same for all nodes, with the base in double precision.
   Eigen::VectorXd superpose(const Eigen::VectorXd& amounts) const;
 
   /// [J]; exact, because the energy is quadratic.
   double energy(const Eigen::VectorXd& amounts) const;
 
  private:
-  void superpose(const Eigen::VectorXd& amounts, double* positions, std::size_t count) const;
+  template <class From>
+  void superpose(const Eigen::VectorXd& amounts, const From* base, double* positions,
+                 std::size_t count) const;
 
   Eigen::VectorXd base_;
+  std::vector<float> float_base_;
   std::vector<std::vector<float>> columns_;
   // The energy at the base, and its derivatives by the amounts there.
   double base_energy_;
