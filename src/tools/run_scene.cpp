@@ -81,6 +81,18 @@ std::vector<std::vector<tissue_tools::StampedPose>> paths_for(
   return paths;
 }
 
+// One equilibrium; with inertia, as long as the scene says.
+std::vector<tissue_tools::Instant> instants_without_poses(const tissue::SceneDescription& scene) {
+  const bool swings = scene.has(tissue::Effect::kInertia);
+  const auto steps =
+      swings ? static_cast<std::size_t>(std::ceil(scene.duration / scene.dt - 1e-9)) : 0;
+  std::vector<tissue_tools::Instant> instants;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    instants.push_back({static_cast<double>(i) * scene.dt, tissue::ToolPoses(scene.tools.size())});
+  }
+  return instants;
+}
+
 nlohmann::json triple(const tissue::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 // What the steps of a run cost and how they went.
@@ -179,7 +191,7 @@ void run(const Arguments& arguments) {
   const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
   std::vector<tissue_tools::Instant> instants =
       tissue_tools::merged(paths_for(description, arguments.paths));
-  if (instants.empty()) instants.push_back({0.0, tissue::ToolPoses(description.tools.size())});
+  if (instants.empty()) instants = instants_without_poses(description);
   const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
   tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
                       arguments.threads);

@@ -79,7 +79,7 @@ TEST(Elasticity, T11_ForcesAndStiffnessOfAMeshAreDerivativesOfItsEnergy) {
         return gradient;
       };
       const Eigen::VectorXd gradient = gradient_at(problem.positions);
-      BlockMatrix hessian = problem.energy.empty_hessian();
+      BlockMatrix hessian = problem.elements.empty_matrix();
       problem.energy.add_hessian(problem.positions, hessian);
       const double h = 1e-7;
       for (Eigen::Index i = 0; i < problem.positions.size(); ++i) {
@@ -194,7 +194,7 @@ TEST(Elasticity, ResultsAreTheSameInMillimetresAfterRenumberingAndWithTwoThreads
 
 TEST(Elasticity, S4_T14_ABodyThatNothingHoldsIsFoundByItsPivots) {
   Problem problem(kuhn_block({3, 2, 2}, {0.03, 0.02, 0.02}), 1, Constitution::kLinear, kSoft);
-  BlockMatrix hessian = problem.energy.empty_hessian();
+  BlockMatrix hessian = problem.elements.empty_matrix();
   problem.energy.add_hessian(problem.positions, hessian);
   std::vector<int> number(3 * problem.elements.node_count());
   std::iota(number.begin(), number.end(), 0);

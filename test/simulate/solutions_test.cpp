@@ -128,8 +128,8 @@ double cooks_corner(int cells, int order) {
     const bool clamped = place.x() < 1e-6;
     fixed.insert(fixed.end(), {clamped, clamped, true});
   }
-  Equilibrium equilibrium({&problem.energy, &load}, problem.energy.empty_hessian(), direct_solver(),
-                          true);
+  Equilibrium equilibrium({&problem.energy, &load}, problem.elements.empty_matrix(),
+                          direct_solver(), true);
   equilibrium.hold_coordinates(fixed);
   EXPECT_TRUE(equilibrium.solve(problem.positions, {1e-9, 10}).converged);
   return 1e3 * problem.displacement(corner).y();

@@ -54,7 +54,7 @@ Recovery recover(const Subject& subject, const Tissue& tissue,
   for (std::size_t node = 0; node < rest.size(); ++node) {
     if (held[node] == 0) problem.move(node, thrown(rest[node]) - rest[node]);
   }
-  Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), direct_solver());
+  Equilibrium equilibrium({&problem.energy}, problem.elements.empty_matrix(), direct_solver());
   equilibrium.hold(held);
   // From step to step the energy never rises.
   Recovery result;
@@ -161,7 +161,7 @@ TEST(Torture, T13_LinearSolvesHoldTheirResidual) {
             held[node] = 1;
             problem.move(node, Vec3(0.002, 0.0, 0.001));
           }
-          Equilibrium equilibrium({&problem.energy}, problem.energy.empty_hessian(), make_solver(),
+          Equilibrium equilibrium({&problem.energy}, problem.elements.empty_matrix(), make_solver(),
                                   true);
           equilibrium.hold(held);
           const EquilibriumReport report = equilibrium.solve(problem.positions, {1e-6, 5});

@@ -2,6 +2,7 @@
 
 #include "support/bodies.h"
 #include "support/problem.h"
+#include "tissue/simulate/spring_energy.h"
 
 #include <stdexcept>
 
@@ -30,9 +31,19 @@ struct TumourSphere {
   }
 };
 
+// Puts springs into a problem's body where there is no constitution.
+struct Springs {
+  std::optional<SpringEnergy> energy;
+  Springs(Problem& problem, const Material& material, const Tissue& tissue) {
+    if (tissue) return;
+    energy.emplace(problem.elements, young_of(material, problem.body));
+    problem.tissue = &*energy;
+  }
+};
+
 }  // namespace
 
-double tumour_sphere_error(const TetMesh& mesh, int order, Constitution constitution) {
+double tumour_sphere_error(const TetMesh& mesh, int order, const Tissue& tissue) {
   constexpr double kRadius = 0.010, kMoved = 1e-4;
   Body body = ball_body(mesh, kRadius, 255.0f, 60.0f);
   double outer = 0.0;
@@ -41,7 +52,8 @@ double tumour_sphere_error(const TetMesh& mesh, int order, Constitution constitu
   }
   outer /= 3.0 * static_cast<double>(body.surface.size());
   const Material material = {{{60.0, 3e3}, {255.0, 6e4}}, 0.3, 1000.0};
-  Problem problem(std::move(body), order, constitution, material);
+  Problem problem(std::move(body), order, tissue.value_or(Constitution::kLinear), material);
+  const Springs springs(problem, material, tissue);
   const TumourSphere exact(kRadius, outer, kMoved, lame_of(3e3, 0.3), lame_of(6e4, 0.3));
   const auto expected = [&](const Vec3& place) -> Vec3 {
     const double r = place.norm();
@@ -62,8 +74,10 @@ double tumour_sphere_error(const TetMesh& mesh, int order, Constitution constitu
   return std::sqrt(squares / all);
 }
 
-double beam_sag(const std::array<int, 3>& cells, int order, Constitution constitution) {
-  Problem problem(kuhn_block(cells, {0.2, 0.1, 0.1}), order, constitution, kSoft);
+double beam_sag(const std::array<int, 3>& cells, int order, const Tissue& tissue) {
+  Problem problem(kuhn_block(cells, {0.2, 0.1, 0.1}), order, tissue.value_or(Constitution::kLinear),
+                  kSoft);
+  const Springs springs(problem, kSoft, tissue);
   const std::vector<Vec3>& rest = problem.elements.rest();
   const GravityEnergy gravity(problem.elements, 1000.0, Vec3(0, 0, -9.81));
   const EquilibriumReport report =

@@ -4,18 +4,21 @@
 #include "tissue/simulate/constitutive.h"
 
 #include <array>
+#include <optional>
 
 namespace tissue_test {
+
+/// A solid, or without a constitution springs on the edges.
+using Tissue = std::optional<tissue::Constitution>;
 
 /// Mean sag [m] of the free end of a clamped beam of 0.2 × 0.1 × 0.1 m of E = 50 kPa, ν = 0.45 and
 /// 1000 kg/m³, `cells` cubes along each axis of six Kuhn tets each. Throws std::runtime_error where
 /// there is no equilibrium.
-double beam_sag(const std::array<int, 3>& cells, int order, tissue::Constitution constitution);
+double beam_sag(const std::array<int, 3>& cells, int order, const Tissue& tissue);
 
 /// How far the displacements are, in relative L2 norm over the nodes, from the exact ones of a
 /// tumour 20 times as stiff as the tissue around it: a ball of 10 mm in the middle of a ball,
 /// `mesh`, whose surface moves out by 0.1 mm. Throws as beam_sag().
-double tumour_sphere_error(const tissue::TetMesh& mesh, int order,
-                           tissue::Constitution constitution);
+double tumour_sphere_error(const tissue::TetMesh& mesh, int order, const Tissue& tissue);
 
 }  // namespace tissue_test

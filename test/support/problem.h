@@ -2,6 +2,7 @@
 
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/equilibrium.h"
+#include "tissue/simulate/gravity.h"
 #include "tissue/simulate/material.h"
 
 #include <gtest/gtest.h>
@@ -39,9 +40,9 @@ struct Problem {
 
   EquilibriumReport solve(const std::vector<std::uint8_t>& held, const Energy* load = nullptr,
                           double tolerance = 1e-10) {
-    std::vector<const Energy*> energies = {&energy};
+    std::vector<const Energy*> energies = {tissue};
     if (load != nullptr) energies.push_back(load);
-    Equilibrium equilibrium(energies, energy.empty_hessian(), direct_solver());
+    Equilibrium equilibrium(energies, elements.empty_matrix(), direct_solver());
     equilibrium.hold(held);
     Eigen::VectorXd motion = positions - rest_positions(elements);
     for (std::size_t node = 0; node < held.size(); ++node) {
@@ -49,13 +50,15 @@ struct Problem {
     }
     positions -= motion;
     equilibrium.follow(positions, motion);
-    return equilibrium.solve(positions, {tolerance, 100});
+    return equilibrium.solve(positions, {tolerance, 1000});
   }
 
   Body body;
   FiniteElements elements;
   std::vector<Lame> lame;
   ElasticEnergy energy;
+  // What is solved for: the elastic energy, unless a test puts something else in its place.
+  const Energy* tissue = &energy;
   Eigen::VectorXd positions;
 };
 

@@ -44,7 +44,8 @@ TEST(RunScene, EveryShippedSceneOfASolidKeepsTheShippedBrainWhole) {
                                                       {"grasp_press.yaml", "grasp_press.csv"},
                                                       {"palpate.yaml", "palpate_tumour.csv"},
                                                       {"palpate.yaml", "palpate_beside.csv"},
-                                                      {"pull.yaml", "pull.csv"}};
+                                                      {"pull.yaml", "pull.csv"},
+                                                      {"tilt.yaml", ""}};
   for (const auto& [scene, path] : runs) {
     const nlohmann::json stats = figures_of(scene, path);
     EXPECT_EQ(stats["inverted"], 0) << scene;

@@ -20,6 +20,9 @@ class BlockMatrix {
   void set_zero();
   /// Adds a block to row `a` and column `b`; the transposed block counts as added to (b, a).
   void add(std::uint32_t a, std::uint32_t b, const Mat3& block);
+  /// Adds a multiple of a matrix that has the same blocks.
+  void add(const BlockMatrix& other, double factor);
+  std::size_t bytes() const;
   std::size_t node_count() const { return begin_.empty() ? 0 : begin_.size() - 1; }
   /// result += A x, nodes numbered three after three.
   void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;

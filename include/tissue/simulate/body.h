@@ -23,6 +23,8 @@ Body body_of(const TetMesh& mesh);
 struct State {
   /// Deformed positions [m], in the order of the rest positions.
   std::vector<Vec3> positions;
+  /// Of the vertices [m/s]; empty where nothing has inertia.
+  std::vector<Vec3> velocities = {};
 };
 
 /// At rest, to the last bit.

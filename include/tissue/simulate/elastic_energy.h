@@ -18,8 +18,6 @@ class ElasticEnergy : public Energy {
   void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const override;
   void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const override;
 
-  /// A matrix with a block wherever this energy adds one.
-  BlockMatrix empty_hessian() const;
   /// The deformation gradient at a quadrature point.
   Mat3 deformation_gradient(std::size_t element, const QuadraturePoint& point,
                             const Eigen::VectorXd& positions) const;
@@ -30,24 +28,5 @@ class ElasticEnergy : public Energy {
   Constitution constitution_;
   Run run_;
 };
-
-/// The potential of the bodies' weight, −∫ ρ g·x dV: linear in the positions.
-class GravityEnergy : public Energy {
- public:
-  /// `mass_density` [kg/m³], `gravity` [m/s²].
-  GravityEnergy(const FiniteElements& elements, double mass_density, const Vec3& gravity);
-
-  double value(const Eigen::VectorXd& positions) const override { return -weight_.dot(positions); }
-  void add_gradient(const Eigen::VectorXd&, Eigen::VectorXd& gradient) const override {
-    gradient -= weight_;
-  }
-  void add_hessian(const Eigen::VectorXd&, BlockMatrix&) const override {}
-
- private:
-  Eigen::VectorXd weight_;
-};
-
-/// Positions of the nodes, three after three.
-Eigen::VectorXd rest_positions(const FiniteElements& elements);
 
 }  // namespace tissue

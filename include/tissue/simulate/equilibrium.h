@@ -41,6 +41,13 @@ class Equilibrium {
   /// is not found `positions` holds the best finite state that was.
   EquilibriumReport solve(Eigen::VectorXd& positions, const EquilibriumOptions& options);
 
+  /// One step of Newton's method without a line search, in which what is held moves by `motion`:
+  /// with inertia among the energies a linearised step of implicit Euler. The residual is the
+  /// linear system's, ‖b − A x‖ / ‖b‖; not converged where that could not be solved.
+  EquilibriumReport linearised_step(Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
+  /// Forgets a factorisation that is kept, after the Hessian of a quadratic energy changed.
+  void forget_factorisation() { is_factorised_ = false; }
+
   /// How the free nodes move when the fixed ones do, to first order: a start nearer to the
   /// equilibrium than leaving them behind. `motion` holds the motion of fixed nodes.
   void follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tissue/simulate/block_matrix.h"
 #include "tissue/simulate/body.h"
 
 #include <vector>
@@ -51,6 +52,9 @@ class FiniteElements {
   const std::vector<std::size_t>& incidence_begin() const { return incidence_begin_; }
   const std::vector<std::uint64_t>& incidence() const { return incidence_; }
 
+  /// A matrix of zeros with a block wherever two nodes share an element.
+  BlockMatrix empty_matrix() const;
+
  private:
   void add_midpoints(const Body& body);
   void find_incidence();
@@ -66,5 +70,8 @@ class FiniteElements {
   std::vector<std::size_t> incidence_begin_;
   std::vector<std::uint64_t> incidence_;
 };
+
+/// Positions of the nodes, three after three.
+Eigen::VectorXd rest_positions(const FiniteElements& elements);
 
 }  // namespace tissue

@@ -20,8 +20,11 @@ struct Material {
   double young_at(double density) const;
 };
 
-/// For each tet by its mean density. Throws InputError E_PARAM if the material differs by density
-/// and the body does not say its tets' densities.
+/// Young's modulus [Pa] of each tet by its mean density. Throws InputError E_PARAM if the material
+/// differs by density and the body does not say its tets' densities.
+std::vector<double> young_of(const Material& material, const Body& body);
+
+/// The same as Lamé's constants.
 std::vector<Lame> lame_of(const Material& material, const Body& body);
 
 }  // namespace tissue

@@ -13,11 +13,11 @@
 
 namespace tissue {
 
-/// What moves a body: the paper's formula, or tissue as a solid.
-enum class Model { kClosedForm, kLinear, kCorotational, kNeoHookean };
+/// What moves a body: the paper's formula, springs on its edges, or tissue as a solid.
+enum class Model { kClosedForm, kMassSpring, kLinear, kCorotational, kNeoHookean };
 
 /// What a scene may add to a model.
-enum class Effect { kDensityResponse, kRecovery, kFoldGuard, kGravity };
+enum class Effect { kDensityResponse, kRecovery, kFoldGuard, kGravity, kInertia, kDamping };
 
 const char* name(Model model);
 const char* name(Effect effect);
@@ -35,6 +35,22 @@ struct ToolDescription {
   double radius = 0.004;
   /// `press` takes hold of the tissue at the first touch; `grasp` when the jaw closes on it.
   bool grasps = false;
+};
+
+/// Effect `inertia`: implicit Euler in substeps of at most so many seconds, each of so many of
+/// Newton's iterations (1: a linearised step; more: to the solver's tolerance).
+struct InertiaOptions {
+  double substep = 0.02;
+  int iterations = 1;
+};
+
+/// Effect `damping`, Rayleigh's: what resists velocities is α times the mass and β times the
+/// stiffness.
+struct DampingOptions {
+  /// α [1/s]
+  double mass = 5.0;
+  /// β [s]
+  double stiffness = 0.0;
 };
 
 /// Something to report: the centroid of all tissue denser than a value, or a place in the tissue.
@@ -69,6 +85,10 @@ struct SceneDescription {
   /// Effect `gravity` [m/s²].
   Vec3 gravity = {0.0, 0.0, -9.81};
   EquilibriumOptions solver;
+  InertiaOptions inertia;
+  DampingOptions damping;
+  /// How long a run without poses lasts and its time step [s]; with inertia only.
+  double duration = 1.0, dt = 0.01;
 };
 
 }  // namespace tissue

@@ -9,7 +9,7 @@ namespace tissue {
 /// Reads a scene, strictly: an unknown word, a value out of range or an effect that the model
 /// cannot have is an InputError (E_SCENE, E_PARAM or E_FILE) whose sentence names the line and the
 /// key. Keys that the model does not use (`material`, `anchors`, `probes`, `solver`,
-/// `element_order`) are checked and otherwise ignored.
+/// `element_order`, `duration`, `dt`) are checked and otherwise ignored.
 SceneDescription parse_scene(const std::string& yaml);
 SceneDescription read_scene(const std::string& path);
 

@@ -43,6 +43,15 @@ void BlockMatrix::add(std::uint32_t a, std::uint32_t b, const Mat3& block) {
   }
 }
 
+void BlockMatrix::add(const BlockMatrix& other, double factor) {
+  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k] += factor * other.blocks_[k];
+}
+
+std::size_t BlockMatrix::bytes() const {
+  return begin_.size() * sizeof(std::size_t) + columns_.size() * sizeof(std::uint32_t) +
+         blocks_.size() * sizeof(Mat3);
+}
+
 void BlockMatrix::multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const {
   for (std::size_t row = 0; row < node_count(); ++row) {
     const auto i = static_cast<Eigen::Index>(3 * row);

@@ -127,32 +127,4 @@ void ElasticEnergy::add_hessian(const Eigen::VectorXd& positions, BlockMatrix& h
   }
 }
 
-BlockMatrix ElasticEnergy::empty_hessian() const {
-  const int n = elements_.nodes_per_element();
-  const std::uint32_t* nodes = elements_.nodes(0);
-  return {elements_.node_count(),
-          {nodes, nodes + elements_.element_count() * static_cast<std::size_t>(n)},
-          n};
-}
-
-GravityEnergy::GravityEnergy(const FiniteElements& elements, double mass_density,
-                             const Vec3& gravity)
-    : weight_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * elements.node_count()))) {
-  for (std::size_t e = 0; e < elements.element_count(); ++e) {
-    const Vec3 weight = mass_density * elements.volume(e) * gravity;
-    for (int a = 0; a < elements.nodes_per_element(); ++a) {
-      weight_.segment<3>(3 * Eigen::Index{elements.nodes(e)[a]}) +=
-          elements.node_weight(a) * weight;
-    }
-  }
-}
-
-Eigen::VectorXd rest_positions(const FiniteElements& elements) {
-  Eigen::VectorXd positions(static_cast<Eigen::Index>(3 * elements.node_count()));
-  for (std::size_t node = 0; node < elements.node_count(); ++node) {
-    positions.segment<3>(static_cast<Eigen::Index>(3 * node)) = elements.rest()[node];
-  }
-  return positions;
-}
-
 }  // namespace tissue

@@ -107,16 +107,18 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
   constexpr double kArmijo = 1e-4;
   const double slope = gradient.dot(step);
   if (!(slope < 0.0) || !step.allFinite()) return false;
-  const double before = free_part(gradient).norm();
+  const double before = free_part(gradient).norm(), size = extent(positions);
+  // Near the minimum what is gained drowns in the energy's rounding, also that of terms which
+  // cancel at rest; forces still tell.
+  const double noise =
+      std::max(1e-9 * std::abs(energy_now), kRounding * largest_stiffness_ * size * size);
   const double farthest = step.cwiseAbs().maxCoeff();
-  const double longest = quadratic_ ? 1.0 : kLongestStep * extent(positions) / farthest;
+  const double longest = quadratic_ ? 1.0 : kLongestStep * size / farthest;
   for (double length = std::min(1.0, longest); length > 1e-10; length *= 0.5) {
     Eigen::VectorXd there = positions + length * step;
     const double energy_there = energy(there);
     const bool lower = energy_there <= energy_now + kArmijo * length * slope;
-    // Near the minimum what is gained drowns in the energy's rounding; forces still tell.
-    const bool drowned = -length * slope <= 1e-9 * std::abs(energy_now) &&
-                         std::abs(energy_there - energy_now) <= 1e-9 * std::abs(energy_now);
+    const bool drowned = -length * slope <= noise && std::abs(energy_there - energy_now) <= noise;
     if (!std::isfinite(energy_there)) continue;
     if (lower || (drowned && free_part(this->gradient(there)).norm() < before)) {
       positions = std::move(there);
@@ -135,6 +137,23 @@ Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size());
   hessian_.multiply_add(motion, pull);
   return motion + step_for(pull);
+}
+
+EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
+                                               const Eigen::VectorXd& motion) {
+  EquilibriumReport report;
+  report.iterations = 1;
+  if (!factorise(positions)) return report;
+  Eigen::VectorXd pull = gradient(positions);
+  hessian_.multiply_add(motion, pull);
+  const double before = free_part(pull).norm();
+  const Eigen::VectorXd step = step_for(pull);
+  hessian_.multiply_add(step, pull);
+  report.residual = before > 0.0 ? free_part(pull).norm() / before : 0.0;
+  positions += motion + step;
+  report.energy = energy(positions);
+  report.converged = std::isfinite(report.energy) && positions.allFinite();
+  return report;
 }
 
 void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion) {

@@ -81,4 +81,16 @@ void FiniteElements::gradients(std::size_t element, const QuadraturePoint& point
   }
 }
 
+BlockMatrix FiniteElements::empty_matrix() const {
+  return {node_count(), nodes_, nodes_per_element()};
+}
+
+Eigen::VectorXd rest_positions(const FiniteElements& elements) {
+  Eigen::VectorXd positions(static_cast<Eigen::Index>(3 * elements.node_count()));
+  for (std::size_t node = 0; node < elements.node_count(); ++node) {
+    positions.segment<3>(static_cast<Eigen::Index>(3 * node)) = elements.rest()[node];
+  }
+  return positions;
+}
+
 }  // namespace tissue

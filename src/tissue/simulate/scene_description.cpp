@@ -7,6 +7,7 @@ namespace tissue {
 const char* name(Model model) {
   switch (model) {
     case Model::kClosedForm: return "closed_form";
+    case Model::kMassSpring: return "mass_spring";
     case Model::kLinear: return "linear";
     case Model::kCorotational: return "corotational";
     case Model::kNeoHookean: return "neo_hookean";
@@ -20,19 +21,22 @@ const char* name(Effect effect) {
     case Effect::kRecovery: return "recovery";
     case Effect::kFoldGuard: return "fold_guard";
     case Effect::kGravity: return "gravity";
+    case Effect::kInertia: return "inertia";
+    case Effect::kDamping: return "damping";
   }
   return "";
 }
 
 const std::vector<Model>& all_models() {
-  static const std::vector<Model> models = {Model::kClosedForm, Model::kLinear,
+  static const std::vector<Model> models = {Model::kClosedForm, Model::kMassSpring, Model::kLinear,
                                             Model::kCorotational, Model::kNeoHookean};
   return models;
 }
 
 const std::vector<Effect>& all_effects() {
   static const std::vector<Effect> effects = {Effect::kDensityResponse, Effect::kRecovery,
-                                              Effect::kFoldGuard, Effect::kGravity};
+                                              Effect::kFoldGuard,       Effect::kGravity,
+                                              Effect::kInertia,         Effect::kDamping};
   return effects;
 }
 
@@ -41,7 +45,9 @@ bool can_have(Model model, Effect effect) {
     case Effect::kDensityResponse: return true;
     case Effect::kRecovery:
     case Effect::kFoldGuard: return model == Model::kClosedForm;
-    case Effect::kGravity: return model != Model::kClosedForm;
+    case Effect::kGravity:
+    case Effect::kInertia:
+    case Effect::kDamping: return model != Model::kClosedForm;
   }
   return false;
 }

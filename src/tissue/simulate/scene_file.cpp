@@ -112,6 +112,24 @@ std::vector<ToolDescription> tools_from(const YamlReader& reader, Model model) {
   return tools;
 }
 
+InertiaOptions inertia_from(const YamlReader& reader) {
+  reader.require_keys({"substep", "iterations"});
+  InertiaOptions options;
+  if (reader.has("substep")) options.substep = reader.at("substep").number(0.0, 3600.0, true);
+  if (reader.has("iterations")) {
+    options.iterations = static_cast<int>(reader.at("iterations").number(1.0, 1e6));
+  }
+  return options;
+}
+
+DampingOptions damping_from(const YamlReader& reader) {
+  reader.require_keys({"mass", "stiffness"});
+  DampingOptions options;
+  if (reader.has("mass")) options.mass = reader.at("mass").number(0.0, kHuge);
+  if (reader.has("stiffness")) options.stiffness = reader.at("stiffness").number(0.0, kHuge);
+  return options;
+}
+
 // An effect is a word, or a map from the word to its parameters.
 void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::string>& seen) {
   const bool bare = entry.is_word();
@@ -158,6 +176,12 @@ void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::
       if (!bare && entry.members()[0].has("vector")) {
         scene.gravity = place_from(entry.members()[0].at("vector"), "a vector [x, y, z]");
       }
+      break;
+    case Effect::kInertia:
+      if (!bare) scene.inertia = inertia_from(entry.members()[0]);
+      break;
+    case Effect::kDamping:
+      if (!bare) scene.damping = damping_from(entry.members()[0]);
   }
 }
 
@@ -172,7 +196,7 @@ Model model_from(const YamlReader& reader) {
 
 SceneDescription scene_from(const YamlReader& file) {
   file.require_keys({"name", "model", "element_order", "range", "literal", "rise_time", "material",
-                     "anchors", "tools", "probes", "effects", "solver"});
+                     "anchors", "tools", "probes", "effects", "solver", "duration", "dt"});
   SceneDescription scene;
   if (file.has("name")) scene.name = file.at("name").word();
   scene.model = model_from(file.at("model"));
@@ -180,6 +204,10 @@ SceneDescription scene_from(const YamlReader& file) {
     const double order = file.at("element_order").number(1.0, 2.0);
     if (order != 1.0 && order != 2.0) {
       file.at("element_order").refuse(ErrorCode::kParam, "is neither 1 nor 2");
+    }
+    if (order != 1.0 && scene.model == Model::kMassSpring) {
+      file.at("element_order")
+          .refuse(ErrorCode::kScene, "of 2 needs tissue as a solid, not springs");
     }
     scene.element_order = static_cast<int>(order);
   }
@@ -190,10 +218,16 @@ SceneDescription scene_from(const YamlReader& file) {
   if (scene.model != Model::kClosedForm) scene.tools.clear();
   if (file.has("tools")) scene.tools = tools_from(file.at("tools"), scene.model);
   if (file.has("probes")) scene.probes = probes_from(file.at("probes"));
+  if (file.has("duration")) scene.duration = file.at("duration").number(0.0, 1e6, true);
+  if (file.has("dt")) scene.dt = file.at("dt").number(0.0, 3600.0, true);
   if (file.has("solver")) scene.solver = solver_from(file.at("solver"));
   if (file.has("effects")) {
     std::set<std::string> seen;
     for (const YamlReader& effect : file.at("effects").entries()) add_effect(effect, scene, seen);
+    if (scene.has(Effect::kDamping) && !scene.has(Effect::kInertia)) {
+      file.at("effects").refuse(ErrorCode::kScene,
+                                "names damping without inertia: nothing swings that it could damp");
+    }
   }
   if (file.has("material")) {
     scene.material = material_from(file.at("material"), scene.has(Effect::kDensityResponse));

@@ -1,7 +1,10 @@
 #include "deformation_model.h"
+#include "dynamics.h"
 #include "held_nodes.h"
-#include "linear_response.h"
+#include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
+#include "tissue/simulate/gravity.h"
+#include "tissue/simulate/spring_energy.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -45,26 +48,35 @@ class SolidModel : public DeformationModel {
       : scene_(scene),
         body_(body),
         elements_(body, scene.element_order),
-        lame_(lame_with_cost(scene, body, costs)),
-        elastic_(elements_, lame_, constitution_of(scene.model), run_on(threads)),
-        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene.anchors)),
+        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
         rest_(rest_positions(elements_)),
         positions_(rest_) {
-    std::vector<const Energy*> energies = {&elastic_};
-    if (scene.has(Effect::kGravity)) {
-      EffectCost* const cost = costs.of(Effect::kGravity);
+    make_tissue(costs, threads);
+    potentials_ = {tissue_.get()};
+    if (EffectCost* const cost = costs.of(Effect::kGravity)) {
       const CostClock clock(cost);
       gravity_.emplace(elements_, scene.material.mass_density, scene.gravity);
-      cost->bytes = static_cast<std::size_t>(positions_.size()) * sizeof(double);
-      energies.push_back(&*gravity_);
+      counted_gravity_.emplace(*gravity_, cost);
+      cost->bytes = gravity_->bytes();
+      potentials_.push_back(&*counted_gravity_);
     }
-    equilibrium_ = std::make_unique<Equilibrium>(std::move(energies), elastic_.empty_hessian(),
+    std::vector<const Energy*> energies = potentials_;
+    if (scene.has(Effect::kInertia)) {
+      dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
+      for (const Energy* energy : dynamics_->energies()) energies.push_back(energy);
+    }
+    equilibrium_ = std::make_unique<Equilibrium>(std::move(energies), elements_.empty_matrix(),
                                                  direct_solver(), scene.model == Model::kLinear);
     reset();
   }
 
-  StepReport step(const ToolPoses& tools, double) override {
+  StepReport step(const ToolPoses& tools, double dt) override {
     const bool regrip = held_.update(tools, state_.positions);
+    if (dynamics_) {
+      if (regrip) equilibrium_->hold(held_.flags());
+      if (dt > 0.0) swing(tools, dt);
+      return report_;
+    }
     if (scene_.model == Model::kLinear && !regrip && settled_) {
       superpose(tools);
       return report_;
@@ -85,12 +97,16 @@ class SolidModel : public DeformationModel {
     positions_ = rest_;
     state_ = rest_state(body_);
     report_ = {};
-    report_.energy = equilibrium_->energy(positions_);
+    if (dynamics_) {
+      dynamics_->reset();
+      state_.velocities.assign(body_.rest.size(), Vec3::Zero());
+    }
+    report_.energy = potential_energy();
     // Without a load, rest is the equilibrium.
     settled_ = !gravity_;
   }
 
-  bool recovering() const override { return false; }
+  bool recovering() const override { return dynamics_ && dynamics_->moving(); }
   const State& state() const override { return state_; }
 
   std::vector<std::optional<Vec3>> tool_forces() const override {
@@ -105,12 +121,13 @@ class SolidModel : public DeformationModel {
   }
 
   std::vector<TetStrain> strains() const override {
+    if (!elastic_) return {};
     std::vector<TetStrain> result(body_.tets.size());
     const Eigen::VectorXd positions = positions_now();
     for (std::size_t t = 0; t < result.size(); ++t) {
       for (const QuadraturePoint& point : elements_.quadrature()) {
         const TetStrain here = tet_strain(constitution_of(scene_.model), lame_[t],
-                                          elastic_.deformation_gradient(t, point, positions));
+                                          elastic_->deformation_gradient(t, point, positions));
         result[t].von_mises += point.weight * here.von_mises;
         result[t].largest_strain += point.weight * here.largest_strain;
       }
@@ -119,79 +136,53 @@ class SolidModel : public DeformationModel {
   }
 
  private:
-  static std::vector<Lame> lame_with_cost(const SceneDescription& scene, const Body& body,
-                                          EffectCosts& costs) {
+  void make_tissue(EffectCosts& costs, int threads) {
     EffectCost* const cost = costs.of(Effect::kDensityResponse);
     const CostClock clock(cost);
-    std::vector<Lame> result = lame_of(scene.material, body);
-    if (cost != nullptr) cost->bytes = result.capacity() * sizeof(Lame);
-    return result;
+    std::size_t bytes = 0;
+    if (scene_.model == Model::kMassSpring) {
+      const std::vector<double> young = young_of(scene_.material, body_);
+      tissue_ = std::make_unique<SpringEnergy>(elements_, young);
+    } else {
+      lame_ = lame_of(scene_.material, body_);
+      bytes = lame_.capacity() * sizeof(Lame);
+      auto elastic = std::make_unique<ElasticEnergy>(
+          elements_, lame_, constitution_of(scene_.model), run_on(threads));
+      elastic_ = elastic.get();
+      tissue_ = std::move(elastic);
+    }
+    if (cost != nullptr) cost->bytes = bytes;
   }
 
-  static std::vector<int> held_by_anchors(const Body& body, const std::vector<Anchor>& anchors) {
-    std::vector<int> holders = anchors_of_vertices(body, anchors);
-    require_held(body, holders);
+  static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
+    std::vector<int> holders = anchors_of_vertices(body, scene.anchors);
+    // What has inertia may fly.
+    if (!scene.has(Effect::kInertia)) require_held(body, holders);
     return holders;
+  }
+
+  double potential_energy() const {
+    double sum = 0.0;
+    for (const Energy* energy : potentials_) sum += energy->value(positions_);
+    return sum;
   }
 
   std::vector<Vec3> forces_on_holders() const {
     return held_.forces(equilibrium_->gradient(positions_now()));
   }
 
-  // How each tool has moved since the base: its translation, then R − I column by column.
-  Eigen::VectorXd amounts_at(const ToolPoses& tools) const {
-    Eigen::VectorXd amounts = Eigen::VectorXd::Zero(12 * static_cast<Eigen::Index>(tools.size()));
-    for (std::size_t i = 0; i < tools.size(); ++i) {
-      if (!tools[i] || !base_tools_[i]) continue;
-      const auto k = 12 * static_cast<Eigen::Index>(i);
-      amounts.segment<3>(k) = tools[i]->position - base_tools_[i]->position;
-      // A tool that only moves costs one pass over the body, one that turns four.
-      if (tools[i]->orientation.coeffs() == base_tools_[i]->orientation.coeffs()) continue;
-      const Eigen::Quaterniond turn =
-          tools[i]->orientation.normalized() * base_tools_[i]->orientation.normalized().conjugate();
-      const Mat3 change = turn.toRotationMatrix() - Mat3::Identity();
-      amounts.segment<9>(k + 3) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change.data());
-    }
-    return amounts;
-  }
-
-  // Twelve motions for each tool, in the order of amounts_at(), from the poses of the step before,
-  // with which what is held is at an equilibrium.
-  void prepare_response() {
-    base_tools_ = last_tools_;
-    std::vector<Eigen::VectorXd> motions;
-    for (std::size_t tool = 0; tool < base_tools_.size(); ++tool) {
-      const Vec3 centre = base_tools_[tool] ? base_tools_[tool]->position : Vec3(Vec3::Zero());
-      const auto add = [&](const std::function<Vec3(const Vec3&)>& motion_at) {
-        motions.push_back(held_.motion_of(tool, positions_, centre, motion_at));
-      };
-      for (int axis = 0; axis < 3; ++axis) {
-        add([&](const Vec3&) -> Vec3 { return Vec3::Unit(axis); });
-      }
-      for (int column = 0; column < 3; ++column) {
-        for (int row = 0; row < 3; ++row) {
-          add([&](const Vec3& offset) -> Vec3 { return offset[column] * Vec3::Unit(row); });
-        }
-      }
-    }
-    response_.emplace(*equilibrium_, positions_, motions);
-  }
-
   // Small strain: where the tools go decides where everything goes, and nothing is solved.
   void superpose(const ToolPoses& tools) {
     if (!held_.any_grip()) return;
-    if (!response_) prepare_response();
-    amounts_ = amounts_at(tools);
-    response_->superpose(amounts_, state_.positions);
+    if (!response_) response_.emplace(*equilibrium_, held_, positions_, last_tools_);
+    response_->follow(tools, state_.positions);
     held_.place(tools, state_.positions);
     report_.iterations = 0;
-    report_.energy = response_->energy(amounts_);
+    report_.energy = response_->energy();
   }
 
   // Of all nodes, also after a superposition.
-  Eigen::VectorXd positions_now() const {
-    return response_ ? response_->superpose(amounts_) : positions_;
-  }
+  Eigen::VectorXd positions_now() const { return response_ ? response_->positions() : positions_; }
 
   void move(const Eigen::VectorXd& motion) {
     const Eigen::VectorXd before = positions_;
@@ -200,6 +191,23 @@ class SolidModel : public DeformationModel {
     report_.not_converged = !settled_;
     if (!settled_) positions_ = before;
     take_state();
+  }
+
+  // Goes on in time while the tools move to where they are.
+  void swing(const ToolPoses& tools, double dt) {
+    const EquilibriumReport found = dynamics_->advance(
+        *equilibrium_,
+        [&](const Eigen::VectorXd& positions) { return held_.motion_to(tools, positions); }, dt,
+        positions_);
+    report_ = {};
+    report_.iterations = found.iterations;
+    report_.residual = found.residual;
+    report_.not_converged = !found.converged;
+    report_.energy = potential_energy() + dynamics_->kinetic_energy();
+    take_state();
+    for (std::size_t v = 0; v < body_.rest.size(); ++v) {
+      state_.velocities[v] = dynamics_->velocities().segment<3>(static_cast<Eigen::Index>(3 * v));
+    }
   }
 
   // Moves what is held by `motion` and lets the rest settle; in two halves where that fails.
@@ -229,18 +237,23 @@ class SolidModel : public DeformationModel {
   const SceneDescription& scene_;
   const Body& body_;
   FiniteElements elements_;
-  std::vector<Lame> lame_;
-  ElasticEnergy elastic_;
-  std::optional<GravityEnergy> gravity_;
   HeldNodes held_;
+  std::vector<Lame> lame_;
+  // What the tissue stores; as a solid, if it is one.
+  std::unique_ptr<const Energy> tissue_;
+  const ElasticEnergy* elastic_ = nullptr;
+  std::optional<GravityEnergy> gravity_;
+  std::optional<CountedEnergy> counted_gravity_;
+  // Of both.
+  std::vector<const Energy*> potentials_;
+  std::unique_ptr<Dynamics> dynamics_;
   // Of all nodes.
   Eigen::VectorXd rest_, positions_;
   State state_;
   std::unique_ptr<Equilibrium> equilibrium_;
   // For small strain, while what the tools hold stays the same.
-  std::optional<LinearResponse> response_;
-  ToolPoses last_tools_, base_tools_;
-  Eigen::VectorXd amounts_;
+  std::optional<ToolResponse> response_;
+  ToolPoses last_tools_;
   StepReport report_;
   bool settled_ = true;
 };

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "effect_costs.h"
+#include "tissue/simulate/damping.h"
+#include "tissue/simulate/equilibrium.h"
+
+#include <functional>
+
+namespace tissue {
+
+/// Implicit Euler: what the effects `inertia` and `damping` make of a solid.
+class Dynamics {
+ public:
+  /// References must outlive this.
+  Dynamics(const SceneDescription& scene, const FiniteElements& elements, const Energy& tissue,
+           EffectCosts& costs);
+
+  /// What a step adds to the body's own energies.
+  std::vector<const Energy*> energies() const;
+
+  /// Advances by `dt` > 0 seconds, in substeps; `motion_left` says by how much what is held must
+  /// still move from where it is. Where a substep fails, positions and velocities are as before.
+  EquilibriumReport advance(
+      Equilibrium& equilibrium,
+      const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& motion_left, double dt,
+      Eigen::VectorXd& positions);
+
+  /// At rest.
+  void reset();
+  /// Of all nodes, three after three [m/s].
+  const Eigen::VectorXd& velocities() const { return velocities_; }
+  /// [J]
+  double kinetic_energy() const;
+  /// False once nothing has moved to speak of for some steps.
+  bool moving() const { return quiet_steps_ < kQuietSteps; }
+
+ private:
+  static constexpr int kQuietSteps = 10;
+  EquilibriumReport substep(Equilibrium& equilibrium, const Eigen::VectorXd& motion, double h,
+                            Eigen::VectorXd& positions);
+  void count_quiet_steps();
+
+  const SceneDescription& scene_;
+  InertiaEnergy inertia_;
+  std::optional<DampingEnergy> damping_;
+  std::vector<CountedEnergy> counted_;
+  EffectCost* inertia_cost_;
+  EffectCost* damping_cost_;
+  Eigen::VectorXd velocities_;
+  // Size of the body [m].
+  double extent_;
+  double last_h_ = 0.0;
+  int quiet_steps_ = 0;
+};
+
+}  // namespace tissue

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "tissue/simulate/energy.h"
+#include "tissue/simulate/scene.h"
+
+#include <chrono>
+
+namespace tissue {
+
+/// Seconds and bytes of the effects that a scene names, and of no others.
+class EffectCosts {
+ public:
+  explicit EffectCosts(const std::vector<Effect>& effects) : effects_(effects) {
+    for (const Effect effect : effects) costs_.push_back({name(effect), 0.0, 0});
+  }
+  /// Nothing if the scene does not name the effect.
+  EffectCost* of(Effect effect) {
+    for (std::size_t i = 0; i < effects_.size(); ++i) {
+      if (effects_[i] == effect) return &costs_[i];
+    }
+    return nullptr;
+  }
+  const std::vector<EffectCost>& all() const { return costs_; }
+
+ private:
+  std::vector<Effect> effects_;
+  std::vector<EffectCost> costs_;
+};
+
+/// Adds the time until its end to an effect's cost.
+class CostClock {
+ public:
+  explicit CostClock(EffectCost* cost) : cost_(cost) {}
+  ~CostClock() {
+    if (cost_ == nullptr) return;
+    cost_->seconds +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  CostClock(const CostClock&) = delete;
+  CostClock& operator=(const CostClock&) = delete;
+
+ private:
+  EffectCost* cost_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// An energy whose calls are counted as the cost of an effect. Both references must outlive this.
+class CountedEnergy : public Energy {
+ public:
+  CountedEnergy(const Energy& energy, EffectCost* cost) : energy_(energy), cost_(cost) {}
+  double value(const Eigen::VectorXd& positions) const override {
+    const CostClock clock(cost_);
+    return energy_.value(positions);
+  }
+  void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const override {
+    const CostClock clock(cost_);
+    energy_.add_gradient(positions, gradient);
+  }
+  void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const override {
+    const CostClock clock(cost_);
+    energy_.add_hessian(positions, hessian);
+  }
+
+ private:
+  const Energy& energy_;
+  EffectCost* cost_;
+};
+
+}  // namespace tissue

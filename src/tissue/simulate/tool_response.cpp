@@ -1,0 +1,54 @@
+#include "tool_response.h"
+
+#include <utility>
+
+namespace tissue {
+namespace {
+
+constexpr Eigen::Index kMotions = 12;
+
+// Twelve motions for each tool, by a unit each: along the axes, then the columns of R − I.
+std::vector<Eigen::VectorXd> unit_motions(const HeldNodes& held, const Eigen::VectorXd& base,
+                                          const ToolPoses& tools) {
+  std::vector<Eigen::VectorXd> motions;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    const Vec3 centre = tools[tool] ? tools[tool]->position : Vec3(Vec3::Zero());
+    const auto add = [&](const std::function<Vec3(const Vec3&)>& motion_at) {
+      motions.push_back(held.motion_of(tool, base, centre, motion_at));
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+      add([&](const Vec3&) -> Vec3 { return Vec3::Unit(axis); });
+    }
+    for (int column = 0; column < 3; ++column) {
+      for (int row = 0; row < 3; ++row) {
+        add([&](const Vec3& offset) -> Vec3 { return offset[column] * Vec3::Unit(row); });
+      }
+    }
+  }
+  return motions;
+}
+
+}  // namespace
+
+ToolResponse::ToolResponse(Equilibrium& equilibrium, const HeldNodes& held,
+                           const Eigen::VectorXd& base, ToolPoses base_tools)
+    : base_tools_(std::move(base_tools)),
+      response_(equilibrium, base, unit_motions(held, base, base_tools_)) {}
+
+void ToolResponse::follow(const ToolPoses& tools, std::vector<Vec3>& vertices) {
+  amounts_.setZero(kMotions * static_cast<Eigen::Index>(tools.size()));
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    if (!tools[i] || !base_tools_[i]) continue;
+    const auto k = kMotions * static_cast<Eigen::Index>(i);
+    amounts_.segment<3>(k) = tools[i]->position - base_tools_[i]->position;
+    // A tool that only moves costs one pass over the body, one that turns four.
+    if (tools[i]->orientation.coeffs() == base_tools_[i]->orientation.coeffs()) continue;
+    const Eigen::Quaterniond turn =
+        tools[i]->orientation.normalized() * base_tools_[i]->orientation.normalized().conjugate();
+    const Mat3 change = turn.toRotationMatrix() - Mat3::Identity();
+    amounts_.segment<9>(k + 3) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change.data());
+  }
+  response_.superpose(amounts_, vertices);
+}
+
+}  // namespace tissue

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "held_nodes.h"
+#include "linear_response.h"
+
+namespace tissue {
+
+/// A linear body that tools hold: it follows them by superposition.
+class ToolResponse {
+ public:
+  /// `base` is an equilibrium with the tools at `base_tools`.
+  ToolResponse(Equilibrium& equilibrium, const HeldNodes& held, const Eigen::VectorXd& base,
+               ToolPoses base_tools);
+
+  /// Where the vertices are once the tools are there.
+  void follow(const ToolPoses& tools, std::vector<Vec3>& vertices);
+  /// The same of all nodes, for the tools followed last.
+  Eigen::VectorXd positions() const { return response_.superpose(amounts_); }
+  double energy() const { return response_.energy(amounts_); }
+
+ private:
+  ToolPoses base_tools_;
+  LinearResponse response_;
+  // How each tool has moved since the base: its translation, then R − I column by column.
+  Eigen::VectorXd amounts_;
+};
+
+}  // namespace tissue
