@@ -216,6 +216,7 @@ void DeformerNode::publish_status() {
   status.step_seconds = step_seconds_;
   status.iterations = static_cast<std::uint32_t>(last_step_.iterations);
   status.residual = last_step_.residual;
+  status.solver = last_step_.solver;
   status.energy = last_step_.energy.value_or(std::numeric_limits<double>::quiet_NaN());
   status.min_det_f = quality.min_det_f;
   status.inverted = quality.inverted;

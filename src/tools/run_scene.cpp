@@ -145,6 +145,7 @@ nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
           {"effects", effects},
           {"iterations", record.last.iterations},
           {"residual", record.last.residual},
+          {"solver", record.last.solver},
           {"energy_j", record.last.energy ? nlohmann::json(*record.last.energy) : nlohmann::json()},
           {"min_det_f", quality.min_det_f},
           {"inverted", quality.inverted},

@@ -5,13 +5,13 @@
 
 namespace tissue_test {
 
-/// A beam of 0.2 × 0.1 × 0.1 m that is held at one end and grasped at the other: what a step costs
-/// while the tool moves on.
+/// A beam of 0.2 × 0.1 × 0.1 m, halved twice from a coarser one, that is held at one end and
+/// grasped at the other: what a step costs while the tool moves on.
 class GraspedBeam {
  public:
   GraspedBeam(const std::array<int, 3>& cells, tissue::Model model, int order)
       : scene_(description(model, order),
-               std::make_shared<tissue::Body>(kuhn_block(cells, {0.2, 0.1, 0.1}))) {
+               std::make_shared<tissue::Body>(kuhn_block(cells, {0.2, 0.1, 0.1}, 2))) {
     scene_.step(pose(), 0.0);
   }
 

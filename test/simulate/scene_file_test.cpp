@@ -77,9 +77,10 @@ TEST(SceneFile, SaysLineAndKeyOfWhatItRefuses) {
         tissue_test::refusal([&] { parse_scene("model: closed_form\n" + refused.line); });
     EXPECT_EQ(text.substr(0, refused.sentence.size()), refused.sentence) << text;
   }
-  EXPECT_EQ(tissue_test::refusal([] { parse_scene("model: jelly"); }),
-            "E_SCENE: scene: line 1, model: 'jelly' is not a model; these are: closed_form mass_spring "
-            "linear corotational neo_hookean");
+  EXPECT_EQ(
+      tissue_test::refusal([] { parse_scene("model: jelly"); }),
+      "E_SCENE: scene: line 1, model: 'jelly' is not a model; these are: closed_form mass_spring "
+      "linear corotational neo_hookean");
   EXPECT_EQ(tissue_test::refusal([] { parse_scene("{"); }).substr(0, 7), "E_SCENE");
   EXPECT_EQ(tissue_test::refusal([] { parse_scene("- a list"); }).substr(0, 7), "E_SCENE");
   EXPECT_EQ(tissue_test::refusal([] { read_scene("/nowhere.yaml"); }).substr(0, 6), "E_FILE");

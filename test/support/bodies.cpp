@@ -10,30 +10,45 @@ namespace tissue_test {
 
 using namespace tissue;
 
-Body kuhn_block(const std::array<int, 3>& cells, const Vec3& size) {
+Body kuhn_block(const std::array<int, 3>& cells, const Vec3& size, int halvings) {
   Body body;
-  const auto number = [&](int x, int y, int z) {
-    return static_cast<std::uint32_t>(x + (cells[0] + 1) * (y + (cells[1] + 1) * z));
+  const auto at = [&](int x, int y, int z) {
+    return static_cast<std::size_t>(x + (cells[0] + 1) * (y + (cells[1] + 1) * z));
   };
-  for (int z = 0; z <= cells[2]; ++z) {
-    for (int y = 0; y <= cells[1]; ++y) {
-      for (int x = 0; x <= cells[0]; ++x) {
-        const Vec3 place(size[0] * x / cells[0], size[1] * y / cells[1], size[2] * z / cells[2]);
-        body.rest.push_back(place.cast<float>());
+  // Vertices of the coarsest block first, then what each halving adds.
+  std::vector<std::uint32_t> numbers(at(0, 0, cells[2] + 1), 0xffffffffu);
+  for (int halving = 0; halving <= halvings; ++halving) {
+    const int step = 1 << (halvings - halving);
+    for (int z = 0; z <= cells[2]; z += step) {
+      for (int y = 0; y <= cells[1]; y += step) {
+        for (int x = 0; x <= cells[0]; x += step) {
+          std::uint32_t& number = numbers[at(x, y, z)];
+          if (number != 0xffffffffu) continue;
+          number = static_cast<std::uint32_t>(body.rest.size());
+          body.rest.push_back(
+              Vec3(size[0] * x / cells[0], size[1] * y / cells[1], size[2] * z / cells[2])
+                  .cast<float>());
+          if (halving == 0) continue;
+          // Half-way along the edge or diagonal of a cube of the coarser block.
+          const int dx = x / step % 2 * step, dy = y / step % 2 * step, dz = z / step % 2 * step;
+          body.parents.push_back(
+              {numbers[at(x - dx, y - dy, z - dz)], numbers[at(x + dx, y + dy, z + dz)]});
+        }
       }
     }
   }
+  const auto number = [&](int x, int y, int z) { return numbers[at(x, y, z)]; };
   constexpr int kOrders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}};
   for (int z = 0; z < cells[2]; ++z) {
     for (int y = 0; y < cells[1]; ++y) {
       for (int x = 0; x < cells[0]; ++x) {
         for (const auto& order : kOrders) {
-          std::array<int, 3> at = {x, y, z};
+          std::array<int, 3> corner = {x, y, z};
           Tet tet;
-          tet[0] = number(at[0], at[1], at[2]);
+          tet[0] = number(corner[0], corner[1], corner[2]);
           for (int step = 0; step < 3; ++step) {
-            ++at[order[step]];
-            tet[step + 1] = number(at[0], at[1], at[2]);
+            ++corner[order[step]];
+            tet[step + 1] = number(corner[0], corner[1], corner[2]);
           }
           if (determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]],
                           body.rest[tet[3]]) < 0.0) {

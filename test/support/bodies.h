@@ -7,8 +7,10 @@
 
 namespace tissue_test {
 
-/// A block from the origin to `size` [m], `cells` cubes along each axis, each of six Kuhn tets.
-tissue::Body kuhn_block(const std::array<int, 3>& cells, const tissue::Vec3& size);
+/// A block from the origin to `size` [m], `cells` cubes along each axis, each of six Kuhn tets. It
+/// knows its hierarchy as far as it was made by `halvings` of a coarser block.
+tissue::Body kuhn_block(const std::array<int, 3>& cells, const tissue::Vec3& size,
+                        int halvings = 0);
 
 /// A density-refined ball of 30 mm radius around the origin with a dense ball of a third of that in
 /// it: coarse tets of density 255 in the middle, fine ones of density 60 around. Smaller `spacing`

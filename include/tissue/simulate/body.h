@@ -14,6 +14,9 @@ struct Body {
   std::vector<float> densities;
   /// Mean over each tet; empty where the mesh does not say.
   std::vector<float> tet_densities;
+  /// For each of the last vertices the ends of the edge that it halves; empty for a mesh without a
+  /// hierarchy.
+  std::vector<Edge> parents = {};
 };
 
 /// Throws InputError as check_mesh does.

@@ -28,7 +28,8 @@ struct EquilibriumReport {
 class Equilibrium {
  public:
   /// `energies` must outlive this; `pattern` has a block wherever one of them adds one. Where all
-  /// of them are quadratic the Hessian is factorised once for the same fixed nodes.
+  /// of them are quadratic the Hessian is made, and the solver prepared, once for the same fixed
+  /// nodes.
   Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
               std::unique_ptr<LinearSolver> solver, bool quadratic = false);
 
@@ -45,8 +46,8 @@ class Equilibrium {
   /// with inertia among the energies a linearised step of implicit Euler. The residual is the
   /// linear system's, ‖b − A x‖ / ‖b‖; not converged where that could not be solved.
   EquilibriumReport linearised_step(Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
-  /// Forgets a factorisation that is kept, after the Hessian of a quadratic energy changed.
-  void forget_factorisation() { is_factorised_ = false; }
+  /// To be called when the Hessian of a quadratic energy, which is kept, has changed.
+  void forget_hessian() { is_prepared_ = false; }
 
   /// How the free nodes move when the fixed ones do, to first order: a start nearer to the
   /// equilibrium than leaving them behind. `motion` holds the motion of fixed nodes.
@@ -55,27 +56,28 @@ class Equilibrium {
   /// That motion of all nodes; `motion` alone where the Hessian cannot be factorised.
   Eigen::VectorXd response(const Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
 
+  /// The method by which linear systems were solved last.
+  const char* solver_name() const { return solver_->name(); }
+
   double energy(const Eigen::VectorXd& positions) const;
   /// dE/dx of all nodes; at fixed ones it is the force that holds them [N].
   Eigen::VectorXd gradient(const Eigen::VectorXd& positions) const;
 
  private:
-  bool factorise(const Eigen::VectorXd& positions);
-  Eigen::VectorXd free_part(const Eigen::VectorXd& all) const;
-  Eigen::VectorXd step_for(const Eigen::VectorXd& gradient) const;
-  double fixed_norm(const Eigen::VectorXd& gradient) const;
+  bool prepare(const Eigen::VectorXd& positions);
+  bool step_for(const Eigen::VectorXd& gradient, Eigen::VectorXd& step) const;
+  double norm_of(const Eigen::VectorXd& gradient, bool of_fixed) const;
   bool line_search(const Eigen::VectorXd& step, const Eigen::VectorXd& gradient,
                    Eigen::VectorXd& positions, double& energy) const;
 
   std::vector<const Energy*> energies_;
   BlockMatrix hessian_;
-  // For each coordinate its number among the free ones, or −1.
-  std::vector<int> number_;
-  int free_count_ = 0;
+  // A flag for each coordinate.
+  std::vector<std::uint8_t> fixed_;
   double largest_stiffness_ = 0.0;
   std::unique_ptr<LinearSolver> solver_;
   bool quadratic_;
-  bool is_factorised_ = false;
+  bool is_prepared_ = false;
 };
 
 }  // namespace tissue

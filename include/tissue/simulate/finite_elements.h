@@ -36,6 +36,9 @@ class FiniteElements {
   double volume(std::size_t element) const { return volumes_[element]; }
   /// For each node after the vertices the edge whose midpoint it is; empty for order 1.
   const std::vector<Edge>& midpoints() const { return midpoints_; }
+  /// For each of the last nodes the two between which it lay half-way when it was made: parents of
+  /// the body's vertices, then `midpoints`.
+  const std::vector<Edge>& parents() const { return parents_; }
 
   /// The centroid for order 1; four points that integrate quadratics exactly for order 2.
   const std::vector<QuadraturePoint>& quadrature() const { return quadrature_; }
@@ -63,7 +66,7 @@ class FiniteElements {
   std::vector<QuadraturePoint> quadrature_;
   std::vector<Vec3> rest_;
   std::vector<std::uint32_t> nodes_;
-  std::vector<Edge> midpoints_;
+  std::vector<Edge> midpoints_, parents_;
   // Gradients of the four barycentric coordinates, a row for each.
   std::vector<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> barycentric_gradients_;
   std::vector<double> volumes_;

@@ -1,23 +1,34 @@
 #pragma once
 
-#include <Eigen/SparseCore>
+#include "tissue/simulate/block_matrix.h"
 
 #include <memory>
 
 namespace tissue {
 
-/// Solves A x = b for symmetric positive definite A, factorised once for many b.
+/// Solves A x = b over the coordinates of a block matrix that are free, for symmetric positive
+/// definite A, prepared once for many b.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  /// Takes the lower triangle. False if A is not positive definite, or not to working precision.
-  virtual bool factorise(const Eigen::SparseMatrix<double>& lower) = 0;
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd& b) const = 0;
+  /// Of the method that was used last.
+  virtual const char* name() const = 0;
+  /// Coordinates for which `fixed` is set, three flags for each node, have no equation; `shift` is
+  /// added to the diagonal. False if A is seen not to be positive definite to working precision.
+  /// The matrix must stay as it is until it has been solved with.
+  virtual bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
+                       double shift) = 0;
+  /// All coordinates, of which fixed ones are not looked at and answered with zero. False if no x
+  /// was found.
+  virtual bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;
 };
 
 /// CHOLMOD's supernodal factorisation where the package was built with it, else Eigen's own.
 std::unique_ptr<LinearSolver> direct_solver();
 /// Eigen's simplicial LDLᵀ.
 std::unique_ptr<LinearSolver> eigen_solver();
+/// The first, and the second for what the first cannot solve.
+std::unique_ptr<LinearSolver> with_fallback(std::unique_ptr<LinearSolver> first,
+                                            std::unique_ptr<LinearSolver> second);
 
 }  // namespace tissue

@@ -35,6 +35,8 @@ struct StepReport {
   /// Of the solver; 0 and 0 for closed_form.
   int iterations = 0;
   double residual = 0.0;
+  /// How linear systems were solved; empty where there was none.
+  std::string solver;
   /// Of the state [J]; nothing for closed_form.
   std::optional<double> energy;
 };

@@ -1,6 +1,7 @@
 #include "tissue/simulate/block_matrix.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tissue {
 
@@ -45,6 +46,18 @@ void BlockMatrix::add(std::uint32_t a, std::uint32_t b, const Mat3& block) {
 
 void BlockMatrix::add(const BlockMatrix& other, double factor) {
   for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k] += factor * other.blocks_[k];
+}
+
+double BlockMatrix::largest_diagonal() const {
+  double largest = 0.0, sum = 0.0;
+  // The last block of a row of the lower triangle is the diagonal's.
+  for (std::size_t row = 0; row < node_count(); ++row) {
+    if (begin_[row + 1] == begin_[row]) continue;
+    const Vec3 diagonal = blocks_[begin_[row + 1] - 1].diagonal();
+    largest = std::max(largest, diagonal.maxCoeff());
+    sum += diagonal.sum();
+  }
+  return std::isfinite(sum) ? largest : sum;
 }
 
 std::size_t BlockMatrix::bytes() const {

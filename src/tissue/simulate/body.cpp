@@ -14,6 +14,7 @@ Body body_of(const TetMesh& mesh) {
   body.surface = mesh.surface.empty() ? boundary_of(mesh.tets, mesh.vertices.size()) : mesh.surface;
   body.densities = mesh.densities;
   body.tet_densities = mesh.tet_densities;
+  body.parents = mesh.parents;
   return body;
 }
 

@@ -81,7 +81,7 @@ EquilibriumReport Dynamics::substep(Equilibrium& equilibrium, const Eigen::Vecto
     const CostClock clock(damping_cost_);
     damping_->begin_step(start, h);
   }
-  if (h != last_h_) equilibrium.forget_factorisation();
+  if (h != last_h_) equilibrium.forget_hessian();
   last_h_ = h;
   EquilibriumReport report = equilibrium.linearised_step(positions, motion);
   EquilibriumOptions options = scene_.solver;

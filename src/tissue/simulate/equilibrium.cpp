@@ -2,6 +2,7 @@
 
 #include "tissue/base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,11 +40,11 @@ void Equilibrium::hold(const std::vector<std::uint8_t>& fixed_nodes) {
 }
 
 void Equilibrium::hold_coordinates(const std::vector<std::uint8_t>& fixed) {
-  number_.clear();
-  free_count_ = 0;
-  is_factorised_ = false;
-  for (const std::uint8_t one : fixed) number_.push_back(one != 0 ? -1 : free_count_++);
-  if (free_count_ == 0) throw InputError(ErrorCode::kParam, "anchors: every vertex is held");
+  fixed_ = fixed;
+  is_prepared_ = false;
+  if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end()) {
+    throw InputError(ErrorCode::kParam, "anchors: every vertex is held");
+  }
 }
 
 double Equilibrium::energy(const Eigen::VectorXd& positions) const {
@@ -58,48 +59,33 @@ Eigen::VectorXd Equilibrium::gradient(const Eigen::VectorXd& positions) const {
   return sum;
 }
 
-Eigen::VectorXd Equilibrium::free_part(const Eigen::VectorXd& all) const {
-  Eigen::VectorXd free(free_count_);
-  for (std::size_t i = 0; i < number_.size(); ++i) {
-    if (number_[i] >= 0) free[number_[i]] = all[static_cast<Eigen::Index>(i)];
-  }
-  return free;
-}
-
-double Equilibrium::fixed_norm(const Eigen::VectorXd& gradient) const {
+double Equilibrium::norm_of(const Eigen::VectorXd& gradient, bool of_fixed) const {
   double sum = 0.0;
-  for (std::size_t i = 0; i < number_.size(); ++i) {
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
     const double force = gradient[static_cast<Eigen::Index>(i)];
-    if (number_[i] < 0) sum += force * force;
+    if ((fixed_[i] != 0) == of_fixed) sum += force * force;
   }
   return std::sqrt(sum);
 }
 
-bool Equilibrium::factorise(const Eigen::VectorXd& positions) {
-  if (quadratic_ && is_factorised_) return true;
+bool Equilibrium::prepare(const Eigen::VectorXd& positions) {
+  if (quadratic_ && is_prepared_) return true;
   hessian_.set_zero();
   for (const Energy* energy : energies_) energy->add_hessian(positions, hessian_);
-  const Eigen::SparseMatrix<double> lower = hessian_.lower_triangle(number_, free_count_);
-  const Eigen::VectorXd diagonal = lower.diagonal();
-  largest_stiffness_ = diagonal.maxCoeff();
-  if (!std::isfinite(diagonal.sum())) return false;
-  is_factorised_ = solver_->factorise(lower);
+  largest_stiffness_ = hessian_.largest_diagonal();
+  if (!std::isfinite(largest_stiffness_)) return false;
+  is_prepared_ = solver_->prepare(hessian_, fixed_, 0.0);
   // Flat directions of a convex neighbour of the Hessian: held by a little, then by more.
-  for (double shift = 1e-10; !is_factorised_ && shift < 1.0; shift *= 100.0) {
-    Eigen::SparseMatrix<double> shifted = lower;
-    shifted.diagonal() = diagonal.array() + shift * largest_stiffness_;
-    is_factorised_ = solver_->factorise(shifted);
+  for (double shift = 1e-10; !is_prepared_ && shift < 1.0; shift *= 100.0) {
+    is_prepared_ = solver_->prepare(hessian_, fixed_, shift * largest_stiffness_);
   }
-  return is_factorised_;
+  return is_prepared_;
 }
 
-Eigen::VectorXd Equilibrium::step_for(const Eigen::VectorXd& gradient) const {
-  const Eigen::VectorXd free = solver_->solve(free_part(gradient));
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(gradient.size());
-  for (std::size_t i = 0; i < number_.size(); ++i) {
-    if (number_[i] >= 0) step[static_cast<Eigen::Index>(i)] = -free[number_[i]];
-  }
-  return step;
+bool Equilibrium::step_for(const Eigen::VectorXd& gradient, Eigen::VectorXd& step) const {
+  if (!solver_->solve(gradient, step)) return false;
+  step = -step;
+  return true;
 }
 
 bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd& gradient,
@@ -107,7 +93,7 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
   constexpr double kArmijo = 1e-4;
   const double slope = gradient.dot(step);
   if (!(slope < 0.0) || !step.allFinite()) return false;
-  const double before = free_part(gradient).norm(), size = extent(positions);
+  const double before = norm_of(gradient, false), size = extent(positions);
   // Near the minimum what is gained drowns in the energy's rounding, also that of terms which
   // cancel at rest; forces still tell.
   const double noise =
@@ -120,7 +106,7 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
     const bool lower = energy_there <= energy_now + kArmijo * length * slope;
     const bool drowned = -length * slope <= noise && std::abs(energy_there - energy_now) <= noise;
     if (!std::isfinite(energy_there)) continue;
-    if (lower || (drowned && free_part(this->gradient(there)).norm() < before)) {
+    if (lower || (drowned && norm_of(this->gradient(there), false) < before)) {
       positions = std::move(there);
       energy_now = energy_there;
       return true;
@@ -131,25 +117,26 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
 
 Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
                                       const Eigen::VectorXd& motion) {
-  if (!factorise(positions)) return motion;
+  if (!prepare(positions)) return motion;
   // With the forces that are out of balance left as they are, so that a start at an equilibrium
   // stays near one.
-  Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size());
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size()), step;
   hessian_.multiply_add(motion, pull);
-  return motion + step_for(pull);
+  if (!step_for(pull, step)) return motion;
+  return motion + step;
 }
 
 EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
                                                const Eigen::VectorXd& motion) {
   EquilibriumReport report;
   report.iterations = 1;
-  if (!factorise(positions)) return report;
-  Eigen::VectorXd pull = gradient(positions);
+  if (!prepare(positions)) return report;
+  Eigen::VectorXd pull = gradient(positions), step;
   hessian_.multiply_add(motion, pull);
-  const double before = free_part(pull).norm();
-  const Eigen::VectorXd step = step_for(pull);
+  const double before = norm_of(pull, false);
+  if (!step_for(pull, step)) return report;
   hessian_.multiply_add(step, pull);
-  report.residual = before > 0.0 ? free_part(pull).norm() / before : 0.0;
+  report.residual = before > 0.0 ? norm_of(pull, false) / before : 0.0;
   positions += motion + step;
   report.energy = energy(positions);
   report.converged = std::isfinite(report.energy) && positions.allFinite();
@@ -165,16 +152,17 @@ EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
   EquilibriumReport report;
   report.energy = energy(positions);
   Eigen::VectorXd forces = gradient(positions);
-  const double at_start = free_part(forces).norm();
+  const double at_start = norm_of(forces, false);
   for (;; ++report.iterations) {
-    const double out_of_balance = free_part(forces).norm();
+    const double out_of_balance = norm_of(forces, false);
     const double floor = kRounding * largest_stiffness_ * extent(positions);
-    const double scale = std::max(at_start, fixed_norm(forces));
+    const double scale = std::max(at_start, norm_of(forces, true));
     report.residual = scale > 0.0 ? out_of_balance / scale : 0.0;
     report.converged = report.residual <= options.tolerance || out_of_balance <= floor;
     if (report.converged || report.iterations == options.max_iterations) return report;
-    if (!factorise(positions)) return report;
-    if (!line_search(step_for(forces), forces, positions, report.energy)) {
+    Eigen::VectorXd step;
+    if (!prepare(positions) || !step_for(forces, step)) return report;
+    if (!line_search(step, forces, positions, report.energy)) {
       // Nothing lower along the way downhill: as near as the numbers allow.
       report.converged = out_of_balance <= kRounding * largest_stiffness_ * extent(positions);
       return report;

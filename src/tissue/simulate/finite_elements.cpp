@@ -37,6 +37,7 @@ FiniteElements::FiniteElements(const Body& body, int order) : order_(order) {
     volumes_.push_back(edges.determinant() / 6.0);
     nodes_.insert(nodes_.end(), tet.begin(), tet.end());
   }
+  parents_ = body.parents;
   if (order == 2) add_midpoints(body);
   find_incidence();
 }
@@ -51,6 +52,7 @@ void FiniteElements::add_midpoints(const Body& body) {
     for (const std::uint32_t edge : topology.tet_edges[t]) nodes_.push_back(vertices + edge);
   }
   midpoints_ = std::move(topology.edges);
+  parents_.insert(parents_.end(), midpoints_.begin(), midpoints_.end());
   rest_.reserve(rest_.size() + midpoints_.size());
   for (const Edge& ends : midpoints_) rest_.push_back(0.5 * (rest_[ends[0]] + rest_[ends[1]]));
 }

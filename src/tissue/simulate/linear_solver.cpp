@@ -21,7 +21,15 @@ class Direct : public LinearSolver {
 #endif
   }
 
-  bool factorise(const Matrix& lower) override {
+  const char* name() const override { return kIsCholmod ? "cholmod" : "ldlt"; }
+
+  bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
+               double shift) override {
+    number_.clear();
+    free_count_ = 0;
+    for (const std::uint8_t one : fixed) number_.push_back(one != 0 ? -1 : free_count_++);
+    Matrix lower = matrix.lower_triangle(number_, free_count_);
+    if (shift > 0.0) lower.diagonal().array() += shift;
     if (lower.nonZeros() != entries_ || lower.rows() != rows_) {
       decomposition_.analyzePattern(lower);
       entries_ = lower.nonZeros();
@@ -30,7 +38,19 @@ class Direct : public LinearSolver {
     decomposition_.factorize(lower);
     return decomposition_.info() == Eigen::Success && is_definite();
   }
-  Eigen::VectorXd solve(const Eigen::VectorXd& b) const override { return decomposition_.solve(b); }
+
+  bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
+    Eigen::VectorXd free(free_count_);
+    for (std::size_t i = 0; i < number_.size(); ++i) {
+      if (number_[i] >= 0) free[number_[i]] = b[static_cast<Eigen::Index>(i)];
+    }
+    const Eigen::VectorXd found = decomposition_.solve(free);
+    x.setZero(b.size());
+    for (std::size_t i = 0; i < number_.size(); ++i) {
+      if (number_[i] >= 0) x[static_cast<Eigen::Index>(i)] = found[number_[i]];
+    }
+    return x.allFinite();
+  }
 
  private:
   static constexpr bool kIsCholmod =
@@ -47,10 +67,50 @@ class Direct : public LinearSolver {
   }
 
   Decomposition decomposition_;
+  // For each coordinate its number among the free ones, or −1.
+  std::vector<int> number_;
+  int free_count_ = 0;
   Eigen::Index entries_ = -1, rows_ = -1;
 };
 
+class WithFallback : public LinearSolver {
+ public:
+  WithFallback(std::unique_ptr<LinearSolver> first, std::unique_ptr<LinearSolver> second)
+      : first_(std::move(first)), second_(std::move(second)) {}
+
+  const char* name() const override { return (uses_second_ ? second_ : first_)->name(); }
+
+  bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
+               double shift) override {
+    matrix_ = &matrix;
+    fixed_ = fixed;
+    shift_ = shift;
+    uses_second_ = !first_->prepare(matrix, fixed, shift);
+    return !uses_second_ || second_->prepare(matrix, fixed, shift);
+  }
+
+  bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
+    if (!uses_second_) {
+      if (first_->solve(b, x)) return true;
+      uses_second_ = second_->prepare(*matrix_, fixed_, shift_);
+    }
+    return uses_second_ && second_->solve(b, x);
+  }
+
+ private:
+  std::unique_ptr<LinearSolver> first_, second_;
+  const BlockMatrix* matrix_ = nullptr;
+  std::vector<std::uint8_t> fixed_;
+  double shift_ = 0.0;
+  bool uses_second_ = false;
+};
+
 }  // namespace
+
+std::unique_ptr<LinearSolver> with_fallback(std::unique_ptr<LinearSolver> first,
+                                            std::unique_ptr<LinearSolver> second) {
+  return std::make_unique<WithFallback>(std::move(first), std::move(second));
+}
 
 std::unique_ptr<LinearSolver> eigen_solver() {
   return std::make_unique<Direct<Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>>();

@@ -4,6 +4,7 @@
 #include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/gravity.h"
+#include "tissue/simulate/multigrid.h"
 #include "tissue/simulate/spring_energy.h"
 
 #include <Eigen/Eigenvalues>
@@ -66,7 +67,7 @@ class SolidModel : public DeformationModel {
       for (const Energy* energy : dynamics_->energies()) energies.push_back(energy);
     }
     equilibrium_ = std::make_unique<Equilibrium>(std::move(energies), elements_.empty_matrix(),
-                                                 direct_solver(), scene.model == Model::kLinear);
+                                                 make_solver(), scene.model == Model::kLinear);
     reset();
   }
 
@@ -154,6 +155,17 @@ class SolidModel : public DeformationModel {
     if (cost != nullptr) cost->bytes = bytes;
   }
 
+  // One factorisation that serves all steps, or for each step what is cheapest.
+  std::unique_ptr<LinearSolver> make_solver() const {
+    constexpr std::size_t kFewNodes = 500;
+    const bool once = scene_.model == Model::kLinear && !dynamics_;
+    if (once || elements_.node_count() < kFewNodes) return direct_solver();
+    std::unique_ptr<LinearSolver> multigrid =
+        multigrid_solver(elements_, std::min(1e-3, scene_.solver.tolerance));
+    if (!multigrid) return direct_solver();
+    return with_fallback(std::move(multigrid), direct_solver());
+  }
+
   static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
     std::vector<int> holders = anchors_of_vertices(body, scene.anchors);
     // What has inertia may fly.
@@ -202,6 +214,7 @@ class SolidModel : public DeformationModel {
     report_ = {};
     report_.iterations = found.iterations;
     report_.residual = found.residual;
+    report_.solver = equilibrium_->solver_name();
     report_.not_converged = !found.converged;
     report_.energy = potential_energy() + dynamics_->kinetic_energy();
     take_state();
@@ -217,6 +230,7 @@ class SolidModel : public DeformationModel {
     const EquilibriumReport found = equilibrium_->solve(positions_, scene_.solver);
     report_.iterations += found.iterations;
     report_.residual = found.residual;
+    report_.solver = equilibrium_->solver_name();
     report_.energy = found.energy;
     if (found.converged) return true;
     if (halvings == 0 || motion.isZero(0.0)) return false;
