@@ -1,5 +1,5 @@
-# What nearly every file includes is compiled once for all libraries and once for all test programs:
-# half of what a build costs. Off with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON.
+# What nearly every file includes is compiled once for all libraries and once for all test
+# programs. Off with -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON.
 set(common <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <functional> <map> <memory> <optional>
   <string> <vector>)
 target_precompile_headers(tissue_base PRIVATE ${common})

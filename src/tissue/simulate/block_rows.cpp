@@ -133,9 +133,4 @@ void BlockRows::sweep_back(const float* b, float* x) const {
   }
 }
 
-std::size_t BlockRows::bytes() const {
-  return (begin_.size() + columns_.size() + diagonal_.size()) * sizeof(std::uint32_t) +
-         (values_.size() + inverse_diagonal_.size()) * sizeof(float);
-}
-
 }  // namespace tissue

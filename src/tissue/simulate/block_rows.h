@@ -9,7 +9,7 @@ namespace tissue {
 class BlockRows {
  public:
   BlockRows() = default;
-  /// Zeros where `pattern` names (row, column) pairs of either triangle; every row has a diagonal.
+  /// Zeros in the named columns of each row, which must be symmetric, and on the diagonal.
   BlockRows(std::size_t row_count, std::vector<std::vector<std::uint32_t>> columns_of_rows);
 
   std::size_t row_count() const { return begin_.empty() ? 0 : begin_.size() - 1; }
@@ -39,7 +39,6 @@ class BlockRows {
   void residual_after_sweep(const float* x, float* residual) const;
   /// A sweep in the opposite order.
   void sweep_back(const float* b, float* x) const;
-  std::size_t bytes() const;
 
  private:
   std::vector<std::uint32_t> begin_, columns_, diagonal_;

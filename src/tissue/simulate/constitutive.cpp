@@ -18,7 +18,7 @@ Mat3 cofactor(const Mat3& f) {
 }
 
 // R of F = R S by Newton's iteration (Higham, Computing the Polar Decomposition, 1986), which costs
-// a tenth of a singular value decomposition. Nothing where F is nearly singular or inside out.
+// less than a singular value decomposition. Nothing where F is nearly singular or inside out.
 std::optional<Mat3> rotation_by_newton(const Mat3& f) {
   constexpr double kFarFromSingular = 1e-3;
   const double size = f.norm();
@@ -180,7 +180,7 @@ Lame lame_of(double young, double poisson) {
 
 Mat3 nearest_rotation(const Mat3& f) {
   if (const std::optional<Mat3> rotation = rotation_by_newton(f)) return *rotation;
-  const RotationSvd svd = rotation_svd(f);
+  const RotationSvd svd = svd_by_jacobi(f);
   return svd.u * svd.v.transpose();
 }
 

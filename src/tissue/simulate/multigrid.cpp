@@ -24,8 +24,6 @@ struct Level {
   // quarter to, from first_target[block] on.
   std::vector<std::uint32_t> first_target;
   std::vector<std::uint32_t> targets;
-  // Of this level's nodes behind the next coarser one's.
-  std::vector<Edge> parents;
   std::vector<float> right, x, residual;
 };
 
