@@ -155,16 +155,20 @@ EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
   const double at_start = norm_of(forces, false);
   for (;; ++report.iterations) {
     const double out_of_balance = norm_of(forces, false);
-    const double floor = kRounding * largest_stiffness_ * extent(positions);
     const double scale = std::max(at_start, norm_of(forces, true));
-    report.residual = scale > 0.0 ? out_of_balance / scale : 0.0;
-    report.converged = report.residual <= options.tolerance || out_of_balance <= floor;
+    // Forces that are nothing but rounding are in balance.
+    const auto is_rounding = [&] {
+      return out_of_balance <= kRounding * largest_stiffness_ * extent(positions);
+    };
+    report.residual = scale > 0.0 && !is_rounding() ? out_of_balance / scale : 0.0;
+    report.converged = report.residual <= options.tolerance;
     if (report.converged || report.iterations == options.max_iterations) return report;
     Eigen::VectorXd step;
     if (!prepare(positions) || !step_for(forces, step)) return report;
     if (!line_search(step, forces, positions, report.energy)) {
       // Nothing lower along the way downhill: as near as the numbers allow.
-      report.converged = out_of_balance <= kRounding * largest_stiffness_ * extent(positions);
+      report.converged = is_rounding();
+      if (report.converged) report.residual = 0.0;
       return report;
     }
     forces = gradient(positions);
