@@ -3,6 +3,7 @@
 #include "support/mesh_checks.h"
 #include "support/problem.h"
 #include "tissue/simulate/damping.h"
+#include "tissue/simulate/inertia.h"
 #include "tissue/simulate/scene_file.h"
 #include "tissue/simulate/spring_energy.h"
 
@@ -243,10 +244,9 @@ TEST(Springs, HaveYoungsModulusOnAverage) {
 // Forces are minus the energy's derivative, and their derivatives are the matrix.
 void expect_derivatives(const Energy& energy, const FiniteElements& elements,
                         const Eigen::VectorXd& positions, bool exact_hessian) {
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(positions.size());
-  energy.add_gradient(positions, gradient);
-  BlockMatrix hessian = elements.empty_matrix();
-  energy.add_hessian(positions, hessian);
+  const Eigen::VectorXd gradient = energy.gradient(positions);
+  AssembledHessian hessian(elements);
+  energy.evaluate(positions, nullptr, &hessian);
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   for (int k = 0; k < 20; ++k) {
@@ -257,11 +257,9 @@ void expect_derivatives(const Energy& energy, const FiniteElements& elements,
     const double slope = (energy.value(at(step)) - energy.value(at(-step))) / (2.0 * step);
     EXPECT_NEAR(gradient.dot(way), slope, 1e-5 * gradient.norm() * way.norm());
     if (!exact_hessian) continue;
-    Eigen::VectorXd ahead = Eigen::VectorXd::Zero(positions.size()), behind = ahead,
-                    product = ahead;
-    energy.add_gradient(at(step), ahead);
-    energy.add_gradient(at(-step), behind);
-    hessian.multiply_add(way, product);
+    const Eigen::VectorXd ahead = energy.gradient(at(step)), behind = energy.gradient(at(-step));
+    Eigen::VectorXd product = Eigen::VectorXd::Zero(positions.size());
+    hessian.matrix().multiply_add(way, product);
     EXPECT_LE((product - (ahead - behind) / (2.0 * step)).norm(), 1e-5 * product.norm());
   }
 }
@@ -281,7 +279,7 @@ TEST(Dynamics, T11_SpringsInertiaAndDampingAreDerivativesOfTheirEnergy) {
     expect_derivatives(inertia, elements, positions, true);
     const std::vector<Lame> lame(body->tets.size(), lame_of(1e4, 0.3));
     const ElasticEnergy elastic(elements, lame, Constitution::kNeoHookean);
-    DampingEnergy damping(elastic, inertia.mass(), 3.0, 0.01, elements.empty_matrix());
+    DampingEnergy damping(elastic, elements, inertia.mass(), 3.0, 0.01);
     damping.begin_step(rest, 0.01);
     expect_derivatives(damping, elements, positions, true);
     if (order == 2) continue;

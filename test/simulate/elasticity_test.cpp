@@ -73,14 +73,10 @@ TEST(Elasticity, T11_ForcesAndStiffnessOfAMeshAreDerivativesOfItsEnergy) {
       for (Eigen::Index i = 0; i < problem.positions.size(); ++i) {
         problem.positions[i] += uniform(generator);
       }
-      const auto gradient_at = [&](const Eigen::VectorXd& x) {
-        Eigen::VectorXd gradient = Eigen::VectorXd::Zero(x.size());
-        problem.energy.add_gradient(x, gradient);
-        return gradient;
-      };
+      const auto gradient_at = [&](const Eigen::VectorXd& x) { return problem.energy.gradient(x); };
       const Eigen::VectorXd gradient = gradient_at(problem.positions);
-      BlockMatrix hessian = problem.elements.empty_matrix();
-      problem.energy.add_hessian(problem.positions, hessian);
+      AssembledHessian hessian(problem.elements);
+      problem.energy.evaluate(problem.positions, nullptr, &hessian);
       const double h = 1e-7;
       for (Eigen::Index i = 0; i < problem.positions.size(); ++i) {
         Eigen::VectorXd unit = Eigen::VectorXd::Zero(problem.positions.size());
@@ -90,7 +86,7 @@ TEST(Elasticity, T11_ForcesAndStiffnessOfAMeshAreDerivativesOfItsEnergy) {
         EXPECT_NEAR((problem.energy.value(more) - problem.energy.value(less)) / (2.0 * h),
                     gradient[i], 1e-3 * gradient.norm());
         Eigen::VectorXd column = Eigen::VectorXd::Zero(unit.size());
-        hessian.multiply_add(unit, column);
+        hessian.matrix().multiply_add(unit, column);
         const Eigen::VectorXd difference = (gradient_at(more) - gradient_at(less)) / (2.0 * h);
         // So near to rest little had to be made convex; far from it the laws are tested alone.
         EXPECT_LE((column - difference).norm(), 1e-4 * difference.norm());
@@ -108,9 +104,7 @@ TEST(Elasticity, T10_RigidMotionOfAMeshMakesNoForce) {
       problem.positions.segment<3>(static_cast<Eigen::Index>(3 * node)) =
           rotation * problem.elements.rest()[node] + Vec3(6, -8, 0);
     }
-    Eigen::VectorXd forces = Eigen::VectorXd::Zero(problem.positions.size());
-    problem.energy.add_gradient(problem.positions, forces);
-    EXPECT_LE(forces.norm(), 1e-9 * 5e4 * 0.04 * 0.04);
+    EXPECT_LE(problem.energy.gradient(problem.positions).norm(), 1e-9 * 5e4 * 0.04 * 0.04);
   }
 }
 
@@ -194,10 +188,10 @@ TEST(Elasticity, ResultsAreTheSameInMillimetresAfterRenumberingAndWithTwoThreads
 
 TEST(Elasticity, S4_T14_ABodyThatNothingHoldsIsFoundByItsPivots) {
   Problem problem(kuhn_block({3, 2, 2}, {0.03, 0.02, 0.02}), 1, Constitution::kLinear, kSoft);
-  BlockMatrix hessian = problem.elements.empty_matrix();
-  problem.energy.add_hessian(problem.positions, hessian);
+  const auto system = eigen_system(problem.elements);
+  problem.energy.evaluate(problem.positions, nullptr, system.get());
   const std::vector<std::uint8_t> nothing(3 * problem.elements.node_count(), 0);
-  EXPECT_FALSE(eigen_solver()->prepare(hessian, nothing, 0.0));
+  EXPECT_FALSE(system->prepare(nothing, 0.0));
 }
 
 }  // namespace

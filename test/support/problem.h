@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tissue/simulate/assembled_hessian.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/equilibrium.h"
 #include "tissue/simulate/gravity.h"
@@ -42,7 +43,7 @@ struct Problem {
                           double tolerance = 1e-10) {
     std::vector<const Energy*> energies = {tissue};
     if (load != nullptr) energies.push_back(load);
-    Equilibrium equilibrium(energies, elements.empty_matrix(), direct_solver());
+    Equilibrium equilibrium(energies, direct_system(elements));
     equilibrium.hold(held);
     Eigen::VectorXd motion = positions - rest_positions(elements);
     for (std::size_t node = 0; node < held.size(); ++node) {

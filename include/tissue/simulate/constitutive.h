@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tissue/base/types.h"
+#include "tissue/simulate/lanes.h"
 
 namespace tissue {
 
@@ -9,6 +10,11 @@ using Mat9 = Eigen::Matrix<double, 9, 9>;
 /// Lamé's constants [Pa].
 struct Lame {
   double mu = 0.0, lambda = 0.0;
+};
+
+/// Of a pack of elements.
+struct LameLanes {
+  Lanes mu = {}, lambda = {};
 };
 
 /// From Young's modulus [Pa] and Poisson's ratio below 1/2.

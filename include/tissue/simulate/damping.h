@@ -1,6 +1,7 @@
 #pragma once
 
-#include "tissue/simulate/inertia.h"
+#include "tissue/simulate/energy.h"
+#include "tissue/simulate/mass_matrix.h"
 
 namespace tissue {
 
@@ -10,23 +11,21 @@ namespace tissue {
 class DampingEnergy : public Energy {
  public:
   /// α [1/s] and β [s]; references must outlive this.
-  DampingEnergy(const Energy& tissue, const Eigen::SparseMatrix<double>& mass, double alpha,
-                double beta, BlockMatrix empty_matrix);
+  DampingEnergy(const Energy& tissue, const FiniteElements& elements, const MassMatrix& mass,
+                double alpha, double beta)
+      : tissue_(tissue), elements_(elements), mass_(mass), alpha_(alpha), beta_(beta) {}
 
   void begin_step(const Eigen::VectorXd& positions, double h);
 
-  double value(const Eigen::VectorXd& positions) const override;
-  void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const override;
-  void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const override;
-  std::size_t bytes() const;
+  double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                  Hessian* hessian) const override;
+  std::size_t bytes() const { return static_cast<std::size_t>(start_.size()) * sizeof(double); }
 
  private:
-  Eigen::VectorXd resistance_to(const Eigen::VectorXd& motion) const;
-
   const Energy& tissue_;
-  const Eigen::SparseMatrix<double>& mass_;
+  const FiniteElements& elements_;
+  const MassMatrix& mass_;
   double alpha_, beta_, h_ = 1.0;
-  BlockMatrix stiffness_;
   Eigen::VectorXd start_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tissue/base/run.h"
 #include "tissue/simulate/constitutive.h"
 #include "tissue/simulate/energy.h"
 #include "tissue/simulate/finite_elements.h"
@@ -9,22 +10,30 @@ namespace tissue {
 /// The strain energy of a body: the sum over elements and quadrature points of ψ(F) w V.
 class ElasticEnergy : public Energy {
  public:
-  /// `lame` holds one entry for each element; both references must outlive this.
+  /// `lame` holds one entry for each element; elements must outlive this.
   ElasticEnergy(const FiniteElements& elements, const std::vector<Lame>& lame,
-                Constitution constitution, Run run = {})
-      : elements_(elements), lame_(lame), constitution_(constitution), run_(std::move(run)) {}
+                Constitution constitution, Run run = {});
 
-  double value(const Eigen::VectorXd& positions) const override;
-  void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const override;
-  void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const override;
+  double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                  Hessian* hessian) const override;
 
   /// The deformation gradient at a quadrature point.
   Mat3 deformation_gradient(std::size_t element, const QuadraturePoint& point,
                             const Eigen::VectorXd& positions) const;
+  Lame lame(std::size_t element) const {
+    const LameLanes& lanes = lame_[element / kLanes];
+    return {lanes.mu[element % kLanes], lanes.lambda[element % kLanes]};
+  }
+  Constitution constitution() const { return constitution_; }
+  std::size_t bytes() const { return lame_.size() * sizeof(LameLanes); }
 
  private:
+  template <int order>
+  double evaluate_order(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                        Hessian* hessian) const;
+
   const FiniteElements& elements_;
-  const std::vector<Lame>& lame_;
+  std::vector<LameLanes> lame_;
   Constitution constitution_;
   Run run_;
 };

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "tissue/base/run.h"
-#include "tissue/simulate/block_matrix.h"
+#include "tissue/simulate/hessian.h"
+
+#include <Eigen/Core>
 
 namespace tissue {
 
@@ -10,12 +11,20 @@ namespace tissue {
 class Energy {
  public:
   virtual ~Energy() = default;
-  /// [J]; infinite where the state is not valid.
-  virtual double value(const Eigen::VectorXd& positions) const = 0;
-  /// Adds dE/dx [N], the negative of the force.
-  virtual void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const = 0;
-  /// Adds d²E/dx² [N/m], or where that is indefinite a positive semidefinite matrix near it.
-  virtual void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const = 0;
+  /// [J]; infinite where the state is not valid. Where they are asked for, dE/dx [N], which is the
+  /// negative of the force, is added to `gradient` and d²E/dx² [N/m] to `hessian`, or where that is
+  /// indefinite a positive semidefinite matrix near it.
+  virtual double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                          Hessian* hessian) const = 0;
+
+  double value(const Eigen::VectorXd& positions) const {
+    return evaluate(positions, nullptr, nullptr);
+  }
+  Eigen::VectorXd gradient(const Eigen::VectorXd& positions) const {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(positions.size());
+    evaluate(positions, &result, nullptr);
+    return result;
+  }
 };
 
 }  // namespace tissue

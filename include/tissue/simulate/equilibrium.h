@@ -1,7 +1,7 @@
 #pragma once
 
 #include "tissue/simulate/energy.h"
-#include "tissue/simulate/linear_solver.h"
+#include "tissue/simulate/linear_system.h"
 
 #include <memory>
 #include <vector>
@@ -27,11 +27,11 @@ struct EquilibriumReport {
 /// Newton's method with a line search.
 class Equilibrium {
  public:
-  /// `energies` must outlive this; `pattern` has a block wherever one of them adds one. Where all
-  /// of them are quadratic the Hessian is made, and the solver prepared, once for the same fixed
-  /// nodes.
-  Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
-              std::unique_ptr<LinearSolver> solver, bool quadratic = false);
+  /// `energies` must outlive this. What `system` cannot solve is left to one that `fallback` makes,
+  /// if there is any. Where all energies are quadratic the Hessian is made, and the system
+  /// prepared, once for the same fixed nodes.
+  Equilibrium(std::vector<const Energy*> energies, std::unique_ptr<LinearSystem> system,
+              LinearSystemMaker fallback = {}, bool quadratic = false);
 
   /// Which nodes do not move by themselves, a flag for each. Throws InputError E_PARAM if all are.
   void hold(const std::vector<std::uint8_t>& fixed_nodes);
@@ -44,7 +44,8 @@ class Equilibrium {
 
   /// One step of Newton's method without a line search, in which what is held moves by `motion`:
   /// with inertia among the energies a linearised step of implicit Euler. The residual is the
-  /// linear system's, ‖b − A x‖ / ‖b‖; not converged where that could not be solved.
+  /// linear system's, ‖b − A x‖ / ‖b‖. Not converged where that could not be solved or the energy
+  /// is more at the end than it was after the motion alone.
   EquilibriumReport linearised_step(Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
   /// To be called when the Hessian of a quadratic energy, which is kept, has changed.
   void forget_hessian() { is_prepared_ = false; }
@@ -57,25 +58,34 @@ class Equilibrium {
   Eigen::VectorXd response(const Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
 
   /// The method by which linear systems were solved last.
-  const char* solver_name() const { return solver_->name(); }
+  const char* solver_name() const { return active_->name(); }
 
-  double energy(const Eigen::VectorXd& positions) const;
+  double energy(const Eigen::VectorXd& positions) const {
+    return evaluate(positions, nullptr, nullptr);
+  }
   /// dE/dx of all nodes; at fixed ones it is the force that holds them [N].
   Eigen::VectorXd gradient(const Eigen::VectorXd& positions) const;
 
  private:
-  bool prepare(const Eigen::VectorXd& positions);
-  bool step_for(const Eigen::VectorXd& gradient, Eigen::VectorXd& step) const;
+  double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                  Hessian* hessian) const;
+  double prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient);
+  bool use_fallback(const Eigen::VectorXd& positions);
+  bool prepare_active();
+  bool solve_for(const Eigen::VectorXd& positions, const Eigen::VectorXd& pull,
+                 Eigen::VectorXd& step);
   double norm_of(const Eigen::VectorXd& gradient, bool of_fixed) const;
-  bool line_search(const Eigen::VectorXd& step, const Eigen::VectorXd& gradient,
+  bool line_search(const Eigen::VectorXd& step, Eigen::VectorXd& gradient,
                    Eigen::VectorXd& positions, double& energy) const;
 
   std::vector<const Energy*> energies_;
-  BlockMatrix hessian_;
-  // A flag for each coordinate.
+  // A flag for each coordinate; none where nothing is held.
   std::vector<std::uint8_t> fixed_;
   double largest_stiffness_ = 0.0;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<LinearSystem> system_, fallback_;
+  LinearSystemMaker make_fallback_;
+  // Which of them has the Hessian.
+  LinearSystem* active_;
   bool quadratic_;
   bool is_prepared_ = false;
 };

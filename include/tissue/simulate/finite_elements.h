@@ -1,7 +1,7 @@
 #pragma once
 
-#include "tissue/simulate/block_matrix.h"
 #include "tissue/simulate/body.h"
+#include "tissue/simulate/lanes.h"
 
 #include <vector>
 
@@ -25,19 +25,21 @@ class FiniteElements {
   FiniteElements(const Body& body, int order);
 
   int order() const { return order_; }
-  std::size_t element_count() const { return volumes_.size(); }
+  std::size_t element_count() const { return element_count_; }
   std::size_t node_count() const { return rest_.size(); }
+  std::size_t vertex_count() const { return rest_.size() - midpoints_.size(); }
   int nodes_per_element() const { return order_ == 1 ? 4 : 10; }
   const std::uint32_t* nodes(std::size_t element) const {
     return &nodes_[element * static_cast<std::size_t>(nodes_per_element())];
   }
   /// At rest [m].
   const std::vector<Vec3>& rest() const { return rest_; }
-  double volume(std::size_t element) const { return volumes_[element]; }
+  double volume(std::size_t element) const {
+    return packs_[element / kLanes].volumes[element % kLanes];
+  }
   /// For each node after the vertices the edge whose midpoint it is; empty for order 1.
   const std::vector<Edge>& midpoints() const { return midpoints_; }
-  /// For each of the last nodes the two between which it lay half-way when it was made: parents of
-  /// the body's vertices, then `midpoints`.
+  /// For each of the last vertices the two between which it lay half-way when it was made.
   const std::vector<Edge>& parents() const { return parents_; }
 
   /// The centroid for order 1; four points that integrate quadratics exactly for order 2.
@@ -50,28 +52,31 @@ class FiniteElements {
   /// volume: 1/4 each for order 1; −1/20 at corners and 1/5 at midpoints for order 2.
   double node_weight(int local) const { return order_ == 1 ? 0.25 : local < 4 ? -0.05 : 0.2; }
 
-  /// For each node the elements around it as numbers `element · nodes_per_element + local`,
-  /// ascending, from incidence_begin()[node] on.
-  const std::vector<std::size_t>& incidence_begin() const { return incidence_begin_; }
-  const std::vector<std::uint64_t>& incidence() const { return incidence_; }
-
-  /// A matrix of zeros with a block wherever two nodes share an element.
-  BlockMatrix empty_matrix() const;
+  /// Elements in the lanes of wide registers, in their order. Lanes behind the last element repeat
+  /// it without volume; packs come by the pair, for what takes twice as many lanes.
+  struct Pack {
+    /// Gradients of the barycentric coordinates 1 to 3, a row for each [1/m].
+    LaneMatrix<Lanes> gradients;
+    /// [m³]
+    Lanes volumes;
+  };
+  std::size_t pack_count() const { return packs_.size(); }
+  const Pack& pack(std::size_t number) const { return packs_[number]; }
+  /// How many of a pack's lanes are elements.
+  std::size_t lanes_in_use(std::size_t pack) const {
+    return std::min(kLanes, element_count_ - std::min(element_count_, pack * kLanes));
+  }
 
  private:
   void add_midpoints(const Body& body);
-  void find_incidence();
 
   int order_;
+  std::size_t element_count_;
   std::vector<QuadraturePoint> quadrature_;
   std::vector<Vec3> rest_;
   std::vector<std::uint32_t> nodes_;
   std::vector<Edge> midpoints_, parents_;
-  // Gradients of the four barycentric coordinates, a row for each.
-  std::vector<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> barycentric_gradients_;
-  std::vector<double> volumes_;
-  std::vector<std::size_t> incidence_begin_;
-  std::vector<std::uint64_t> incidence_;
+  std::vector<Pack> packs_;
 };
 
 /// Positions of the nodes, three after three.

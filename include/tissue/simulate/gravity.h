@@ -11,11 +11,11 @@ class GravityEnergy : public Energy {
   /// `mass_density` [kg/m³], `gravity` [m/s²].
   GravityEnergy(const FiniteElements& elements, double mass_density, const Vec3& gravity);
 
-  double value(const Eigen::VectorXd& positions) const override { return -weight_.dot(positions); }
-  void add_gradient(const Eigen::VectorXd&, Eigen::VectorXd& gradient) const override {
-    gradient -= weight_;
+  double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                  Hessian*) const override {
+    if (gradient != nullptr) *gradient -= weight_;
+    return -weight_.dot(positions);
   }
-  void add_hessian(const Eigen::VectorXd&, BlockMatrix&) const override {}
   std::size_t bytes() const { return static_cast<std::size_t>(weight_.size()) * sizeof(double); }
 
  private:

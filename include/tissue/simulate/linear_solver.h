@@ -6,16 +6,15 @@
 
 namespace tissue {
 
-/// Solves A x = b over the coordinates of a block matrix that are free, for symmetric positive
-/// definite A, prepared once for many b.
+/// A factorisation: solves A x = b over the coordinates of a block matrix that are free, for
+/// symmetric positive definite A, prepared once for many b.
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  /// Of the method that was used last.
+  /// Of the method.
   virtual const char* name() const = 0;
   /// Coordinates for which `fixed` is set, three flags for each node, have no equation; `shift` is
   /// added to the diagonal. False if A is seen not to be positive definite to working precision.
-  /// The matrix must stay as it is until it has been solved with.
   virtual bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
                        double shift) = 0;
   /// All coordinates, of which fixed ones are not looked at and answered with zero. False if no x
@@ -27,8 +26,5 @@ class LinearSolver {
 std::unique_ptr<LinearSolver> direct_solver();
 /// Eigen's simplicial LDLᵀ.
 std::unique_ptr<LinearSolver> eigen_solver();
-/// The first, and the second for what the first cannot solve.
-std::unique_ptr<LinearSolver> with_fallback(std::unique_ptr<LinearSolver> first,
-                                            std::unique_ptr<LinearSolver> second);
 
 }  // namespace tissue

@@ -17,10 +17,10 @@ class SpringEnergy : public Energy {
   /// `young` of each tet [Pa]. Elements of order 1; the reference must outlive this.
   SpringEnergy(const FiniteElements& elements, const std::vector<double>& young);
 
-  double value(const Eigen::VectorXd& positions) const override;
-  void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const override;
-  /// Without what compression would take away, so that it stays positive semidefinite.
-  void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const override;
+  /// The Hessian comes without what compression would take away, so that it stays positive
+  /// semidefinite.
+  double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                  Hessian* hessian) const override;
 
  private:
   struct Spring {

@@ -19,15 +19,41 @@ inline Three load(const float* from) {
 }
 inline void store(const Three& value, float* to) { std::memcpy(to, &value, 3 * sizeof(float)); }
 
+inline WideThree load_wide(const float* from) {
+  return __builtin_convertvector(load(from), WideThree);
+}
+
 // Block times vector.
 inline Three times(const float* block, const float* x) {
   return load(block) * x[0] + load(block + 3) * x[1] + load(block + 6) * x[2];
 }
-inline WideThree times(const float* block, const double* x) {
-  const auto wide = [](const float* from) {
-    return __builtin_convertvector(load(from), WideThree);
-  };
-  return wide(block) * x[0] + wide(block + 3) * x[1] + wide(block + 6) * x[2];
+
+// A sum of blocks times vectors, column by column, so that additions need not wait for each other.
+struct Sum {
+  Three column[3] = {};
+  void add(const float* block, const float* x) {
+    column[0] += load(block) * x[0];
+    column[1] += load(block + 3) * x[1];
+    column[2] += load(block + 6) * x[2];
+  }
+  Three total() const { return column[0] + column[1] + column[2]; }
+};
+struct WideSum {
+  WideThree column[3] = {};
+  void add(const float* block, const double* x) {
+    column[0] += load_wide(block) * x[0];
+    column[1] += load_wide(block + 3) * x[1];
+    column[2] += load_wide(block + 6) * x[2];
+  }
+  WideThree total() const { return column[0] + column[1] + column[2]; }
+};
+
+// What a row moves by, from what the others leave of b.
+inline Three solve_row(const float* inverse, const float* b, const Three& others) {
+  const Three rest = load(b) - others;
+  float right[4];
+  std::memcpy(right, &rest, sizeof right);
+  return times(inverse, right);
 }
 
 }  // namespace
@@ -60,76 +86,72 @@ std::uint32_t BlockRows::find(std::uint32_t row, std::uint32_t column) const {
 
 void BlockRows::set_zero() { std::fill(values_.begin(), values_.end(), 0.0f); }
 
-void BlockRows::clear_fixed(const std::vector<std::uint8_t>& fixed) {
-  for (std::size_t row = 0; row < row_count(); ++row) {
-    for (std::uint32_t k = begin_[row]; k < begin_[row + 1]; ++k) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          if (fixed[3 * row + i] != 0 || fixed[3 * std::size_t{columns_[k]} + j] != 0) {
-            block(k)[3 * j + i] = 0.0f;
-          }
-        }
-      }
-    }
-  }
+std::size_t BlockRows::bytes() const {
+  return (begin_.size() + columns_.size() + diagonal_.size()) * sizeof(std::uint32_t) +
+         (values_.size() + inverse_diagonal_.size()) * sizeof(float);
 }
 
-bool BlockRows::finish(float shift) {
+bool BlockRows::invert_diagonal(const std::vector<std::uint8_t>& fixed, float shift) {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    Eigen::Map<Eigen::Matrix3f> diagonal(block(diagonal_[row]));
+    Eigen::Matrix3f own = Eigen::Map<const Eigen::Matrix3f>(block(diagonal_[row]));
     for (int i = 0; i < 3; ++i) {
-      float& value = diagonal(i, i);
-      value = value == 0.0f ? 1.0f : value + shift;
+      if (fixed[3 * row + static_cast<std::size_t>(i)] != 0) {
+        own.row(i).setZero();
+        own.col(i).setZero();
+      }
+      own(i, i) = own(i, i) == 0.0f ? 1.0f : own(i, i) + shift;
     }
-    const Eigen::LLT<Eigen::Matrix3f> factor(diagonal);
+    const Eigen::LLT<Eigen::Matrix3f> factor(own);
     if (factor.info() != Eigen::Success) return false;
     Eigen::Map<Eigen::Matrix3f> inverse(&inverse_diagonal_[9 * row]);
     inverse = factor.solve(Eigen::Matrix3f::Identity());
+    for (int i = 0; i < 3; ++i) {
+      if (fixed[3 * row + static_cast<std::size_t>(i)] != 0) inverse(i, i) = 0.0f;
+    }
   }
   return true;
 }
 
 void BlockRows::multiply(const double* x, double* result) const {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    WideThree sum = {};
+    WideSum sum;
     for (std::uint32_t k = begin_[row]; k < begin_[row + 1]; ++k) {
-      sum += times(block(k), x + 3 * std::size_t{columns_[k]});
+      sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
-    std::memcpy(result + 3 * row, &sum, 3 * sizeof(double));
+    const WideThree total = sum.total();
+    std::memcpy(result + 3 * row, &total, 3 * sizeof(double));
   }
 }
 
 void BlockRows::sweep_from_zero(const float* b, float* x) const {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    Three rest = load(b + 3 * row);
+    Sum sum;
     for (std::uint32_t k = begin_[row]; k < diagonal_[row]; ++k) {
-      rest -= times(block(k), x + 3 * std::size_t{columns_[k]});
+      sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
-    float right[4];
-    std::memcpy(right, &rest, sizeof right);
-    store(times(&inverse_diagonal_[9 * row], right), x + 3 * row);
+    store(solve_row(&inverse_diagonal_[9 * row], b + 3 * row, sum.total()), x + 3 * row);
   }
 }
 
 void BlockRows::residual_after_sweep(const float* x, float* residual) const {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    Three rest = {};
+    Sum sum;
     for (std::uint32_t k = diagonal_[row] + 1; k < begin_[row + 1]; ++k) {
-      rest -= times(block(k), x + 3 * std::size_t{columns_[k]});
+      sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
-    store(rest, residual + 3 * row);
+    store(-sum.total(), residual + 3 * row);
   }
 }
 
 void BlockRows::sweep_back(const float* b, float* x) const {
   for (std::size_t row = row_count(); row-- > 0;) {
-    Three rest = load(b + 3 * row);
+    // Its own block as well: what the row is out of balance by is what it moves by.
+    Sum sum;
     for (std::uint32_t k = begin_[row]; k < begin_[row + 1]; ++k) {
-      if (k != diagonal_[row]) rest -= times(block(k), x + 3 * std::size_t{columns_[k]});
+      sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
-    float right[4];
-    std::memcpy(right, &rest, sizeof right);
-    store(times(&inverse_diagonal_[9 * row], right), x + 3 * row);
+    float* const own = x + 3 * row;
+    store(load(own) + solve_row(&inverse_diagonal_[9 * row], b + 3 * row, sum.total()), own);
   }
 }
 

@@ -1,8 +1,22 @@
 #pragma once
 
-#include "tissue/simulate/block_matrix.h"
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <vector>
 
 namespace tissue {
+
+/// Adds factor · from to a block of nine numbers.
+inline void add_block(float factor, const float* from, float* to) {
+  using Eight = float __attribute__((vector_size(32)));
+  Eight add, sum;
+  std::memcpy(&add, from, sizeof add);
+  std::memcpy(&sum, to, sizeof sum);
+  sum += factor * add;
+  std::memcpy(to, &sum, sizeof sum);
+  to[8] += factor * from[8];
+}
 
 /// A symmetric matrix of 3×3 blocks in single precision, all of each row, for iterative solvers.
 /// Vectors come three after three, with one number more behind the last, which is not looked at.
@@ -24,18 +38,18 @@ class BlockRows {
   float* block(std::uint32_t number) { return &values_[9 * std::size_t{number}]; }
   const float* block(std::uint32_t number) const { return &values_[9 * std::size_t{number}]; }
   void set_zero();
+  std::size_t bytes() const;
 
-  /// Takes out the coordinates for which `fixed` is set: their rows and columns become zero.
-  void clear_fixed(const std::vector<std::uint8_t>& fixed);
-  /// Puts a one where the diagonal is zero, adds `shift` elsewhere, and inverts the diagonal's
-  /// blocks. False unless all of them are positive definite.
-  bool finish(float shift);
+  /// Makes ready to sweep over the coordinates for which `fixed` is not set, three flags for each
+  /// row: inverts the diagonal's blocks, with `shift` added, without what is fixed. Nothing resists
+  /// where the diagonal is zero. False unless all of them are positive definite.
+  bool invert_diagonal(const std::vector<std::uint8_t>& fixed, float shift);
 
   /// result = A x, x and result in double precision.
   void multiply(const double* x, double* result) const;
-  /// The first sweep of Gauss and Seidel for A x = b, from x = 0.
+  /// The first sweep of Gauss and Seidel for A x = b, from x = 0. What is fixed stays zero.
   void sweep_from_zero(const float* b, float* x) const;
-  /// residual = b − A x after that sweep.
+  /// residual = b − A x after that sweep, but for what is fixed.
   void residual_after_sweep(const float* x, float* residual) const;
   /// A sweep in the opposite order.
   void sweep_back(const float* b, float* x) const;

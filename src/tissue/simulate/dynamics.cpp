@@ -25,8 +25,7 @@ Dynamics::Dynamics(const SceneDescription& scene, const FiniteElements& elements
   counted_.emplace_back(inertia_, inertia_cost_);
   inertia_cost_->bytes = inertia_.bytes() + velocities_.size() * sizeof(double);
   if (damping_cost_ == nullptr) return;
-  damping_.emplace(tissue, inertia_.mass(), scene.damping.mass, scene.damping.stiffness,
-                   elements.empty_matrix());
+  damping_.emplace(tissue, elements, inertia_.mass(), scene.damping.mass, scene.damping.stiffness);
   counted_.emplace_back(*damping_, damping_cost_);
   damping_cost_->bytes = damping_->bytes() + velocities_.size() * sizeof(double);
 }
@@ -43,7 +42,7 @@ void Dynamics::reset() {
 }
 
 double Dynamics::kinetic_energy() const {
-  return 0.5 * velocities_.dot(times_mass(inertia_.mass(), velocities_));
+  return 0.5 * velocities_.dot(inertia_.mass().times(velocities_));
 }
 
 EquilibriumReport Dynamics::advance(
@@ -86,8 +85,8 @@ EquilibriumReport Dynamics::substep(Equilibrium& equilibrium, const Eigen::Vecto
   EquilibriumReport report = equilibrium.linearised_step(positions, motion);
   EquilibriumOptions options = scene_.solver;
   options.max_iterations = scene_.inertia.iterations - 1;
-  // A step that ends above where it began went too far: it is found by line searches instead.
-  if (!report.converged || !(report.energy <= equilibrium.energy(start + motion))) {
+  // A step that goes too far is found by line searches instead.
+  if (!report.converged) {
     positions = start + motion;
     options.max_iterations = scene_.solver.max_iterations;
   }
@@ -96,7 +95,11 @@ EquilibriumReport Dynamics::substep(Equilibrium& equilibrium, const Eigen::Vecto
     report = equilibrium.solve(positions, options);
     report.iterations += iterations;
   }
-  if (report.converged) velocities_ = (positions - start) / h;
+  if (report.converged) {
+    velocities_ = (positions - start) / h;
+    potential_energy_ = report.energy;
+    for (const CountedEnergy& energy : counted_) potential_energy_ -= energy.value(positions);
+  }
   return report;
 }
 

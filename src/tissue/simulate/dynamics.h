@@ -3,6 +3,7 @@
 #include "effect_costs.h"
 #include "tissue/simulate/damping.h"
 #include "tissue/simulate/equilibrium.h"
+#include "tissue/simulate/inertia.h"
 
 #include <functional>
 
@@ -31,6 +32,8 @@ class Dynamics {
   const Eigen::VectorXd& velocities() const { return velocities_; }
   /// [J]
   double kinetic_energy() const;
+  /// What the body's own energies came to at the end of the last step that did not fail [J].
+  double potential_energy() const { return potential_energy_; }
   /// False once nothing has moved to speak of for some steps.
   bool moving() const { return quiet_steps_ < kQuietSteps; }
 
@@ -49,7 +52,7 @@ class Dynamics {
   Eigen::VectorXd velocities_;
   // Size of the body [m].
   double extent_;
-  double last_h_ = 0.0;
+  double last_h_ = 0.0, potential_energy_ = 0.0;
   int quiet_steps_ = 0;
 };
 

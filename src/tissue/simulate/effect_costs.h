@@ -48,17 +48,10 @@ class CostClock {
 class CountedEnergy : public Energy {
  public:
   CountedEnergy(const Energy& energy, EffectCost* cost) : energy_(energy), cost_(cost) {}
-  double value(const Eigen::VectorXd& positions) const override {
+  double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                  Hessian* hessian) const override {
     const CostClock clock(cost_);
-    return energy_.value(positions);
-  }
-  void add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const override {
-    const CostClock clock(cost_);
-    energy_.add_gradient(positions, gradient);
-  }
-  void add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const override {
-    const CostClock clock(cost_);
-    energy_.add_hessian(positions, hessian);
+    return energy_.evaluate(positions, gradient, hessian);
   }
 
  private:

@@ -23,14 +23,13 @@ double extent(const Eigen::VectorXd& positions) {
 
 }  // namespace
 
-Equilibrium::Equilibrium(std::vector<const Energy*> energies, BlockMatrix pattern,
-                         std::unique_ptr<LinearSolver> solver, bool quadratic)
+Equilibrium::Equilibrium(std::vector<const Energy*> energies, std::unique_ptr<LinearSystem> system,
+                         LinearSystemMaker fallback, bool quadratic)
     : energies_(std::move(energies)),
-      hessian_(std::move(pattern)),
-      solver_(std::move(solver)),
-      quadratic_(quadratic) {
-  hold(std::vector<std::uint8_t>(hessian_.node_count(), 0));
-}
+      system_(std::move(system)),
+      make_fallback_(std::move(fallback)),
+      active_(system_.get()),
+      quadratic_(quadratic) {}
 
 void Equilibrium::hold(const std::vector<std::uint8_t>& fixed_nodes) {
   std::vector<std::uint8_t> coordinates;
@@ -47,15 +46,16 @@ void Equilibrium::hold_coordinates(const std::vector<std::uint8_t>& fixed) {
   }
 }
 
-double Equilibrium::energy(const Eigen::VectorXd& positions) const {
+double Equilibrium::evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                             Hessian* hessian) const {
   double sum = 0.0;
-  for (const Energy* energy : energies_) sum += energy->value(positions);
+  for (const Energy* energy : energies_) sum += energy->evaluate(positions, gradient, hessian);
   return sum;
 }
 
 Eigen::VectorXd Equilibrium::gradient(const Eigen::VectorXd& positions) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(positions.size());
-  for (const Energy* energy : energies_) energy->add_gradient(positions, sum);
+  evaluate(positions, &sum, nullptr);
   return sum;
 }
 
@@ -68,27 +68,53 @@ double Equilibrium::norm_of(const Eigen::VectorXd& gradient, bool of_fixed) cons
   return std::sqrt(sum);
 }
 
-bool Equilibrium::prepare(const Eigen::VectorXd& positions) {
-  if (quadratic_ && is_prepared_) return true;
-  hessian_.set_zero();
-  for (const Energy* energy : energies_) energy->add_hessian(positions, hessian_);
-  largest_stiffness_ = hessian_.largest_diagonal();
-  if (!std::isfinite(largest_stiffness_)) return false;
-  is_prepared_ = solver_->prepare(hessian_, fixed_, 0.0);
-  // Flat directions of a convex neighbour of the Hessian: held by a little, then by more.
-  for (double shift = 1e-10; !is_prepared_ && shift < 1.0; shift *= 100.0) {
-    is_prepared_ = solver_->prepare(hessian_, fixed_, shift * largest_stiffness_);
-  }
-  return is_prepared_;
+// The energy; is_prepared_ says whether the system can be solved. The gradient is made on the way
+// where it is asked for.
+double Equilibrium::prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient) {
+  if (gradient != nullptr) gradient->setZero(positions.size());
+  if (fixed_.empty()) fixed_.assign(static_cast<std::size_t>(positions.size()), 0);
+  if (quadratic_ && is_prepared_) return evaluate(positions, gradient, nullptr);
+  active_ = system_.get();
+  active_->set_zero();
+  const double energy = evaluate(positions, gradient, active_);
+  is_prepared_ = prepare_active() || use_fallback(positions);
+  return energy;
 }
 
-bool Equilibrium::step_for(const Eigen::VectorXd& gradient, Eigen::VectorXd& step) const {
-  if (!solver_->solve(gradient, step)) return false;
+bool Equilibrium::prepare_active() {
+  active_->finish();
+  largest_stiffness_ = active_->largest_diagonal();
+  if (!std::isfinite(largest_stiffness_)) return false;
+  if (active_->prepare(fixed_, 0.0)) return true;
+  if (active_ == system_.get() && make_fallback_) return false;
+  // Flat directions of a convex neighbour of the Hessian: held by a little, then by more.
+  for (double shift = 1e-10; shift < 1.0; shift *= 100.0) {
+    if (active_->prepare(fixed_, shift * largest_stiffness_)) return true;
+  }
+  return false;
+}
+
+bool Equilibrium::use_fallback(const Eigen::VectorXd& positions) {
+  if (!make_fallback_ || (fallback_ && active_ == fallback_.get())) return false;
+  if (!fallback_) fallback_ = make_fallback_();
+  active_ = fallback_.get();
+  active_->set_zero();
+  evaluate(positions, nullptr, active_);
+  return prepare_active();
+}
+
+// The step that answers a pull, as far as the Hessian at `positions` says.
+bool Equilibrium::solve_for(const Eigen::VectorXd& positions, const Eigen::VectorXd& pull,
+                            Eigen::VectorXd& step) {
+  if (!active_->solve(pull, step)) {
+    is_prepared_ = use_fallback(positions);
+    if (!is_prepared_ || !active_->solve(pull, step)) return false;
+  }
   step = -step;
   return true;
 }
 
-bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd& gradient,
+bool Equilibrium::line_search(const Eigen::VectorXd& step, Eigen::VectorXd& gradient,
                               Eigen::VectorXd& positions, double& energy_now) const {
   constexpr double kArmijo = 1e-4;
   const double slope = gradient.dot(step);
@@ -100,14 +126,17 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
       std::max(1e-9 * std::abs(energy_now), kRounding * largest_stiffness_ * size * size);
   const double farthest = step.cwiseAbs().maxCoeff();
   const double longest = quadratic_ ? 1.0 : kLongestStep * size / farthest;
+  Eigen::VectorXd there, gradient_there;
   for (double length = std::min(1.0, longest); length > 1e-10; length *= 0.5) {
-    Eigen::VectorXd there = positions + length * step;
-    const double energy_there = energy(there);
+    there = positions + length * step;
+    gradient_there.setZero(positions.size());
+    const double energy_there = evaluate(there, &gradient_there, nullptr);
     const bool lower = energy_there <= energy_now + kArmijo * length * slope;
     const bool drowned = -length * slope <= noise && std::abs(energy_there - energy_now) <= noise;
     if (!std::isfinite(energy_there)) continue;
-    if (lower || (drowned && norm_of(this->gradient(there), false) < before)) {
-      positions = std::move(there);
+    if (lower || (drowned && norm_of(gradient_there, false) < before)) {
+      positions.swap(there);
+      gradient.swap(gradient_there);
       energy_now = energy_there;
       return true;
     }
@@ -117,12 +146,13 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, const Eigen::VectorXd
 
 Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
                                       const Eigen::VectorXd& motion) {
-  if (!prepare(positions)) return motion;
+  prepare(positions, nullptr);
+  if (!is_prepared_) return motion;
   // With the forces that are out of balance left as they are, so that a start at an equilibrium
   // stays near one.
   Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size()), step;
-  hessian_.multiply_add(motion, pull);
-  if (!step_for(pull, step)) return motion;
+  active_->multiply_add(motion, pull);
+  if (!solve_for(positions, pull, step)) return motion;
   return motion + step;
 }
 
@@ -130,16 +160,20 @@ EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
                                                const Eigen::VectorXd& motion) {
   EquilibriumReport report;
   report.iterations = 1;
-  if (!prepare(positions)) return report;
-  Eigen::VectorXd pull = gradient(positions), step;
-  hessian_.multiply_add(motion, pull);
+  Eigen::VectorXd pull, step;
+  double allowed = prepare(positions, &pull);
+  if (!is_prepared_) return report;
+  if (!motion.isZero(0.0)) {
+    allowed = energy(positions + motion);
+    active_->multiply_add(motion, pull);
+  }
   const double before = norm_of(pull, false);
-  if (!step_for(pull, step)) return report;
-  hessian_.multiply_add(step, pull);
+  if (!solve_for(positions, pull, step)) return report;
+  active_->multiply_add(step, pull);
   report.residual = before > 0.0 ? norm_of(pull, false) / before : 0.0;
   positions += motion + step;
   report.energy = energy(positions);
-  report.converged = std::isfinite(report.energy) && positions.allFinite();
+  report.converged = positions.allFinite() && report.energy <= allowed;
   return report;
 }
 
@@ -149,9 +183,10 @@ void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& moti
 
 EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
                                      const EquilibriumOptions& options) {
+  if (fixed_.empty()) fixed_.assign(static_cast<std::size_t>(positions.size()), 0);
   EquilibriumReport report;
-  report.energy = energy(positions);
-  Eigen::VectorXd forces = gradient(positions);
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(positions.size()), step;
+  report.energy = evaluate(positions, &forces, nullptr);
   const double at_start = norm_of(forces, false);
   for (;; ++report.iterations) {
     const double out_of_balance = norm_of(forces, false);
@@ -163,15 +198,14 @@ EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
     report.residual = scale > 0.0 && !is_rounding() ? out_of_balance / scale : 0.0;
     report.converged = report.residual <= options.tolerance;
     if (report.converged || report.iterations == options.max_iterations) return report;
-    Eigen::VectorXd step;
-    if (!prepare(positions) || !step_for(forces, step)) return report;
+    prepare(positions, nullptr);
+    if (!is_prepared_ || !solve_for(positions, forces, step)) return report;
     if (!line_search(step, forces, positions, report.energy)) {
       // Nothing lower along the way downhill: as near as the numbers allow.
       report.converged = is_rounding();
       if (report.converged) report.residual = 0.0;
       return report;
     }
-    forces = gradient(positions);
   }
 }
 

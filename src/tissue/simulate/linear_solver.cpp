@@ -73,44 +73,7 @@ class Direct : public LinearSolver {
   Eigen::Index entries_ = -1, rows_ = -1;
 };
 
-class WithFallback : public LinearSolver {
- public:
-  WithFallback(std::unique_ptr<LinearSolver> first, std::unique_ptr<LinearSolver> second)
-      : first_(std::move(first)), second_(std::move(second)) {}
-
-  const char* name() const override { return (uses_second_ ? second_ : first_)->name(); }
-
-  bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
-               double shift) override {
-    matrix_ = &matrix;
-    fixed_ = fixed;
-    shift_ = shift;
-    uses_second_ = !first_->prepare(matrix, fixed, shift);
-    return !uses_second_ || second_->prepare(matrix, fixed, shift);
-  }
-
-  bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
-    if (!uses_second_) {
-      if (first_->solve(b, x)) return true;
-      uses_second_ = second_->prepare(*matrix_, fixed_, shift_);
-    }
-    return uses_second_ && second_->solve(b, x);
-  }
-
- private:
-  std::unique_ptr<LinearSolver> first_, second_;
-  const BlockMatrix* matrix_ = nullptr;
-  std::vector<std::uint8_t> fixed_;
-  double shift_ = 0.0;
-  bool uses_second_ = false;
-};
-
 }  // namespace
-
-std::unique_ptr<LinearSolver> with_fallback(std::unique_ptr<LinearSolver> first,
-                                            std::unique_ptr<LinearSolver> second) {
-  return std::make_unique<WithFallback>(std::move(first), std::move(second));
-}
 
 std::unique_ptr<LinearSolver> eigen_solver() {
   return std::make_unique<Direct<Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>>();

@@ -9,7 +9,7 @@ namespace {
 // How often each node's ancestors were halved: 0 without parents, else one more than the higher of
 // theirs. A node that is its own ancestor has none.
 std::vector<std::uint32_t> depths_of(const FiniteElements& elements) {
-  const std::size_t count = elements.node_count(), coarse = count - elements.parents().size();
+  const std::size_t count = elements.vertex_count(), coarse = count - elements.parents().size();
   constexpr std::uint32_t kUnknown = 0xffffffffu;
   std::vector<std::uint32_t> depths(count, kUnknown);
   std::fill(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(coarse), 0u);

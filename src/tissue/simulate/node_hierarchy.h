@@ -4,17 +4,17 @@
 
 namespace tissue {
 
-/// Nodes in the order of a hierarchy of ever finer sets: each set is the beginning of the next.
+/// Vertices in the order of a hierarchy of ever finer sets: each set is the beginning of the next.
 struct NodeHierarchy {
-  /// For each place in the order its node, and for each node its place.
+  /// For each place in the order its vertex, and for each vertex its place.
   std::vector<std::uint32_t> node_at, place_of;
-  /// How many nodes each level has, the coarsest first; the last has all.
+  /// How many vertices each level has, the coarsest first; the last has all.
   std::vector<std::uint32_t> sizes;
   /// For each place behind the coarsest level the two places between which it lies half-way, both
   /// on coarser levels.
   std::vector<Edge> parents;
 
-  /// Of all nodes without parents and those that are made of them. One level if there are none.
+  /// Of all vertices without parents and those that are made of them. One level if there are none.
   explicit NodeHierarchy(const FiniteElements& elements);
 };
 

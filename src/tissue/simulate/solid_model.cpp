@@ -4,7 +4,8 @@
 #include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/gravity.h"
-#include "tissue/simulate/multigrid.h"
+#include "tissue/simulate/multigrid_system.h"
+#include "tissue/simulate/quadratic_system.h"
 #include "tissue/simulate/spring_energy.h"
 
 #include <Eigen/Eigenvalues>
@@ -66,8 +67,7 @@ class SolidModel : public DeformationModel {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
       for (const Energy* energy : dynamics_->energies()) energies.push_back(energy);
     }
-    equilibrium_ = std::make_unique<Equilibrium>(std::move(energies), elements_.empty_matrix(),
-                                                 make_solver(), scene.model == Model::kLinear);
+    equilibrium_ = make_equilibrium(std::move(energies), run_on(threads));
     reset();
   }
 
@@ -127,7 +127,7 @@ class SolidModel : public DeformationModel {
     const Eigen::VectorXd positions = positions_now();
     for (std::size_t t = 0; t < result.size(); ++t) {
       for (const QuadraturePoint& point : elements_.quadrature()) {
-        const TetStrain here = tet_strain(constitution_of(scene_.model), lame_[t],
+        const TetStrain here = tet_strain(elastic_->constitution(), elastic_->lame(t),
                                           elastic_->deformation_gradient(t, point, positions));
         result[t].von_mises += point.weight * here.von_mises;
         result[t].largest_strain += point.weight * here.largest_strain;
@@ -145,10 +145,10 @@ class SolidModel : public DeformationModel {
       const std::vector<double> young = young_of(scene_.material, body_);
       tissue_ = std::make_unique<SpringEnergy>(elements_, young);
     } else {
-      lame_ = lame_of(scene_.material, body_);
-      bytes = lame_.capacity() * sizeof(Lame);
-      auto elastic = std::make_unique<ElasticEnergy>(
-          elements_, lame_, constitution_of(scene_.model), run_on(threads));
+      auto elastic =
+          std::make_unique<ElasticEnergy>(elements_, lame_of(scene_.material, body_),
+                                          constitution_of(scene_.model), run_on(threads));
+      bytes = elastic->bytes();
       elastic_ = elastic.get();
       tissue_ = std::move(elastic);
     }
@@ -156,14 +156,24 @@ class SolidModel : public DeformationModel {
   }
 
   // One factorisation that serves all steps, or for each step what is cheapest.
-  std::unique_ptr<LinearSolver> make_solver() const {
+  std::unique_ptr<Equilibrium> make_equilibrium(std::vector<const Energy*> energies,
+                                                const Run& run) const {
     constexpr std::size_t kFewNodes = 500;
-    const bool once = scene_.model == Model::kLinear && !dynamics_;
-    if (once || elements_.node_count() < kFewNodes) return direct_solver();
-    std::unique_ptr<LinearSolver> multigrid =
-        multigrid_solver(elements_, std::min(1e-3, scene_.solver.tolerance));
-    if (!multigrid) return direct_solver();
-    return with_fallback(std::move(multigrid), direct_solver());
+    const LinearSystemMaker direct = [this] { return direct_system(elements_); };
+    const bool is_linear = scene_.model == Model::kLinear;
+    std::unique_ptr<LinearSystem> iterative;
+    if (elements_.node_count() >= kFewNodes && (!is_linear || dynamics_)) {
+      // What Newton's iterations need; their own tolerance may be finer.
+      constexpr double kTolerance = 1e-3;
+      iterative = elements_.order() == 1
+                      ? multigrid_system(elements_, kTolerance, run)
+                      : quadratic_system(elements_, constitution_of(scene_.model), kTolerance, run);
+    }
+    if (!iterative) {
+      return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr, is_linear);
+    }
+    return std::make_unique<Equilibrium>(std::move(energies), std::move(iterative), direct,
+                                         is_linear);
   }
 
   static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
@@ -216,7 +226,8 @@ class SolidModel : public DeformationModel {
     report_.residual = found.residual;
     report_.solver = equilibrium_->solver_name();
     report_.not_converged = !found.converged;
-    report_.energy = potential_energy() + dynamics_->kinetic_energy();
+    report_.energy = (found.converged ? dynamics_->potential_energy() : potential_energy()) +
+                     dynamics_->kinetic_energy();
     take_state();
     for (std::size_t v = 0; v < body_.rest.size(); ++v) {
       state_.velocities[v] = dynamics_->velocities().segment<3>(static_cast<Eigen::Index>(3 * v));
@@ -252,7 +263,6 @@ class SolidModel : public DeformationModel {
   const Body& body_;
   FiniteElements elements_;
   HeldNodes held_;
-  std::vector<Lame> lame_;
   // What the tissue stores; as a solid, if it is one.
   std::unique_ptr<const Energy> tissue_;
   const ElasticEnergy* elastic_ = nullptr;

@@ -28,41 +28,31 @@ SpringEnergy::SpringEnergy(const FiniteElements& elements, const std::vector<dou
   }
 }
 
-double SpringEnergy::value(const Eigen::VectorXd& positions) const {
+double SpringEnergy::evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
+                              Hessian* hessian) const {
   double sum = 0.0;
   for (const Spring& spring : springs_) {
-    const double longer =
-        (node(positions, spring.ends[1]) - node(positions, spring.ends[0])).norm() - spring.length;
+    const Vec3 span = node(positions, spring.ends[1]) - node(positions, spring.ends[0]);
+    const double length = span.norm(), longer = length - spring.length;
     sum += 0.5 * spring.stiffness * longer * longer;
-  }
-  return sum;
-}
-
-void SpringEnergy::add_gradient(const Eigen::VectorXd& positions, Eigen::VectorXd& gradient) const {
-  for (const Spring& spring : springs_) {
-    const Vec3 span = node(positions, spring.ends[1]) - node(positions, spring.ends[0]);
-    const double length = span.norm();
-    if (length == 0.0) continue;  // Which way it pushes nobody can say.
-    const Vec3 pull = spring.stiffness * (1.0 - spring.length / length) * span;
-    gradient.segment<3>(3 * Eigen::Index{spring.ends[0]}) -= pull;
-    gradient.segment<3>(3 * Eigen::Index{spring.ends[1]}) += pull;
-  }
-}
-
-void SpringEnergy::add_hessian(const Eigen::VectorXd& positions, BlockMatrix& hessian) const {
-  for (const Spring& spring : springs_) {
-    const Vec3 span = node(positions, spring.ends[1]) - node(positions, spring.ends[0]);
-    const double length = span.norm();
+    // Which way a spring without length pushes nobody can say.
+    if (gradient != nullptr && length > 0.0) {
+      const Vec3 pull = spring.stiffness * longer / length * span;
+      gradient->segment<3>(3 * Eigen::Index{spring.ends[0]}) -= pull;
+      gradient->segment<3>(3 * Eigen::Index{spring.ends[1]}) += pull;
+    }
+    if (hessian == nullptr) continue;
     Mat3 block = spring.stiffness * Mat3::Identity();
     if (length > 0.0) {
       const Mat3 along = span * span.transpose() / (length * length);
-      const double across = std::max(0.0, 1.0 - spring.length / length);
+      const double across = std::max(0.0, longer / length);
       block = spring.stiffness * (along + across * (Mat3::Identity() - along));
     }
-    hessian.add(spring.ends[0], spring.ends[0], block);
-    hessian.add(spring.ends[1], spring.ends[1], block);
-    hessian.add(spring.ends[1], spring.ends[0], -block);
+    hessian->add(spring.ends[0], spring.ends[0], block);
+    hessian->add(spring.ends[1], spring.ends[1], block);
+    hessian->add(spring.ends[1], spring.ends[0], -block);
   }
+  return sum;
 }
 
 }  // namespace tissue

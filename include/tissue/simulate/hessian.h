@@ -1,0 +1,30 @@
+#pragma once
+
+#include "tissue/base/types.h"
+#include "tissue/simulate/lanes.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace tissue {
+
+class MassMatrix;
+template <class L>
+struct MaterialTensorOf;
+using MaterialTensor = MaterialTensorOf<Lanes>;
+
+/// What takes the second derivatives of energies by the positions of nodes [N/m], and keeps as much
+/// of them as it is for: a matrix, a product.
+class Hessian {
+ public:
+  virtual ~Hessian() = default;
+  /// Adds a block to row `a` and column `b`; the transposed block counts as added to (b, a).
+  virtual void add(std::uint32_t a, std::uint32_t b, const Mat3& block) = 0;
+  /// Adds factor · M [factor in 1/s²].
+  virtual void add_mass(const MassMatrix& mass, double factor) = 0;
+  /// Adds what elements are made of at their quadrature points, pack by pack and point by point
+  /// from the first pack on; multiplied by the point's weight and the element's volume.
+  virtual void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) = 0;
+};
+
+}  // namespace tissue

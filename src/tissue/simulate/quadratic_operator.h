@@ -1,0 +1,36 @@
+#pragma once
+
+#include "element_lanes.h"
+#include "tissue/simulate/constitutive.h"
+#include "tissue/simulate/hessian.h"
+
+#include <memory>
+
+namespace tissue {
+
+/// The stiffness and mass of quadratic elements as what they do to vectors: never a matrix, for
+/// that takes four times the memory and more time. In single precision; displacements are taken
+/// from an element's first node on, so that little of them is lost.
+class QuadraticOperator {
+ public:
+  virtual ~QuadraticOperator() = default;
+  void set_zero() { mass_ = 0.0; }
+  /// Elements that are added once more take the place of what they were.
+  virtual void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) = 0;
+  /// `density` [kg/(m³ s²)].
+  void add_mass(double density) { mass_ += density; }
+  /// result += A x
+  virtual void multiply_add(const float* x, float* result) const = 0;
+  virtual void multiply_add(const double* x, double* result) const = 0;
+  virtual std::size_t bytes() const = 0;
+  double mass() const { return mass_; }
+
+ protected:
+  double mass_ = 0.0;
+};
+
+/// Elements must outlive it.
+std::unique_ptr<QuadraticOperator> quadratic_operator(const FiniteElements& elements,
+                                                      Constitution constitution);
+
+}  // namespace tissue

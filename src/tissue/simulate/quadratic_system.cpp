@@ -1,0 +1,318 @@
+#include "tissue/simulate/quadratic_system.h"
+
+#include "conjugate_gradients.h"
+#include "multigrid.h"
+#include "material_tensor.h"
+#include "quadratic_operator.h"
+#include "tissue/simulate/mass_matrix.h"
+#include "vertex_hessian.h"
+
+#include <Eigen/Cholesky>
+
+namespace tissue {
+namespace {
+
+using Mat3f = Eigen::Matrix3f;
+
+// Blocks that couple two nodes, besides what elements do.
+struct Coupling {
+  std::uint32_t a, b;
+  Mat3f block;
+};
+
+class QuadraticSystem : public LinearSystem {
+ public:
+  QuadraticSystem(const FiniteElements& elements, Constitution constitution, double tolerance,
+                  Run run)
+      : elements_(elements),
+        tolerance_(tolerance),
+        operator_(quadratic_operator(elements, constitution)),
+        hierarchy_(elements),
+        vertices_(elements, hierarchy_.place_of, std::move(run)),
+        multigrid_(hierarchy_, vertices_.rows()),
+        diagonal_(elements.node_count(), Mat3f::Zero()) {}
+
+  const char* name() const override { return "p-multigrid"; }
+
+  void set_zero() override {
+    operator_->set_zero();
+    vertices_.set_zero();
+    couplings_.clear();
+    diagonal_.assign(elements_.node_count(), Mat3f::Zero());
+  }
+
+  void add(std::uint32_t a, std::uint32_t b, const Mat3& block) override {
+    couplings_.push_back({a, b, block.cast<float>()});
+    // What is left of it where midpoints stay half-way between their ends.
+    const Edge of_a = ends(a), of_b = ends(b);
+    for (const std::uint32_t i : of_a) {
+      for (const std::uint32_t j : of_b) {
+        if (i == j) {
+          vertices_.add(i, i,
+                        a == b ? Mat3(0.25 * block) : Mat3(0.25 * (block + block.transpose())));
+        } else if (a != b || i < j) {
+          vertices_.add(i, j, 0.25 * block);
+        }
+      }
+    }
+  }
+
+  void add_mass(const MassMatrix& mass, double factor) override {
+    operator_->add_mass(factor * mass.density());
+    vertices_.add_mass(mass, factor);
+  }
+
+  void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) override {
+    operator_->add_elements(first_pack, tensors);
+    vertices_.add_elements(first_pack, tensors);
+    add_diagonal(first_pack, tensors);
+  }
+
+  void finish() override {
+    vertices_.finish();
+    for (std::size_t e = 0; e < elements_.element_count(); ++e) {
+      const double unit = operator_->mass() / 420.0 * elements_.volume(e);
+      for (int a = 0; a < 10; ++a) {
+        diagonal_[elements_.nodes(e)[a]].diagonal().array() +=
+            static_cast<float>(unit * MassMatrix::quadratic_share(a, a));
+      }
+    }
+    for (const Coupling& one : couplings_) {
+      if (one.a == one.b) diagonal_[one.a] += one.block;
+    }
+  }
+
+  double largest_diagonal() const override {
+    double largest = 0.0, sum = 0.0;
+    for (const Mat3f& block : diagonal_) {
+      largest = std::max(largest, static_cast<double>(block.diagonal().maxCoeff()));
+      sum += block.sum();
+    }
+    return std::isfinite(sum) ? largest : sum;
+  }
+
+  void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const override {
+    multiply_add(x.data(), result.data());
+  }
+
+  bool prepare(const std::vector<std::uint8_t>& fixed, double shift) override {
+    fixed_.clear();
+    for (std::uint32_t i = 0; i < fixed.size(); ++i) {
+      if (fixed[i] != 0) fixed_.push_back(i);
+    }
+    if (shift != 0.0 || !invert_diagonal(fixed)) return false;
+    const std::vector<std::uint8_t> of_vertices(
+        fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(3 * elements_.vertex_count()));
+    if (!multigrid_.prepare(of_vertices)) return false;
+    find_largest_eigenvalue();
+    return true;
+  }
+
+  bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
+    Eigen::VectorXd right = b;
+    clear_fixed(right);
+    const auto iterate = [&] {
+      return conjugate_gradients(
+          right, tolerance_,
+          [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
+            product.setZero();
+            multiply_add(from.data(), product.data());
+            clear_fixed(product);
+          },
+          [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) { precondition(residual, z); },
+          x);
+    };
+    int iterations = iterate();
+    if (!multigrid_.serves(iterations)) return false;
+    if (iterations < 0) {
+      iterations = iterate();
+      if (!multigrid_.serves(iterations)) return false;
+    }
+    return true;
+  }
+
+  std::size_t bytes() const override {
+    return operator_->bytes() + vertices_.bytes() + multigrid_.bytes() +
+           diagonal_.capacity() * sizeof(Mat3f) +
+           static_cast<std::size_t>(4 * slowest_.size()) * sizeof(float);
+  }
+
+ private:
+  // The blocks of nodes with themselves.
+  void add_diagonal(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) {
+    const std::vector<QuadraturePoint>& points = elements_.quadrature();
+    for (std::size_t i = 0; i < tensors.size(); i += points.size()) {
+      const std::size_t pack = first_pack + i / points.size();
+      LaneMatrix<Lanes> own[10] = {};
+      for (std::size_t q = 0; q < points.size(); ++q) {
+        Lanes gradients[10][3];
+        shape_gradients<2>(points[q], elements_.pack(pack).gradients, gradients);
+        for (int a = 0; a < 10; ++a) {
+          Lanes turned[3];
+          turn(tensors[i + q], gradients[a], turned);
+          add_coupling(tensors[i + q], turned, turned, own[a]);
+        }
+      }
+      for (std::size_t lane = 0; lane < elements_.lanes_in_use(pack); ++lane) {
+        for (int a = 0; a < 10; ++a) {
+          Mat3f& block = diagonal_[elements_.nodes(pack * kLanes + lane)[a]];
+          for_entries([&](int r, int c) { block(r, c) += static_cast<float>(own[a][r][c][lane]); });
+        }
+      }
+    }
+  }
+
+  Edge ends(std::uint32_t node) const {
+    const std::size_t vertices = elements_.vertex_count();
+    return node < vertices ? Edge{node, node} : elements_.midpoints()[node - vertices];
+  }
+
+  template <class Vector>
+  void clear_fixed(Vector& vector) const {
+    for (const std::uint32_t i : fixed_) vector[i] = 0;
+  }
+
+  template <class Scalar>
+  void multiply_add(const Scalar* x, Scalar* result) const {
+    operator_->multiply_add(x, result);
+    using Vector = Eigen::Matrix<Scalar, 3, 1>;
+    for (const Coupling& one : couplings_) {
+      const std::size_t a = 3 * std::size_t{one.a}, b = 3 * std::size_t{one.b};
+      const Eigen::Matrix<Scalar, 3, 3> block = one.block.template cast<Scalar>();
+      Eigen::Map<Vector>(result + a) += block * Eigen::Map<const Vector>(x + b);
+      if (a == b) continue;
+      Eigen::Map<Vector>(result + b) += block.transpose() * Eigen::Map<const Vector>(x + a);
+    }
+  }
+
+  // Without what is fixed.
+  bool invert_diagonal(const std::vector<std::uint8_t>& fixed) {
+    inverse_diagonal_.resize(diagonal_.size());
+    for (std::size_t node = 0; node < diagonal_.size(); ++node) {
+      Mat3f own = diagonal_[node];
+      const std::uint8_t* flags = &fixed[3 * node];
+      for (int i = 0; i < 3; ++i) {
+        if (flags[i] == 0) continue;
+        own.row(i).setZero();
+        own.col(i).setZero();
+        own(i, i) = 1.0f;
+      }
+      const Eigen::LLT<Mat3f> factor(own);
+      if (factor.info() != Eigen::Success) return false;
+      inverse_diagonal_[node] = factor.solve(Mat3f::Identity());
+      for (int i = 0; i < 3; ++i) {
+        if (flags[i] != 0) inverse_diagonal_[node](i, i) = 0.0f;
+      }
+    }
+    return true;
+  }
+
+  Eigen::VectorXf over_diagonal(const Eigen::VectorXf& r) const {
+    Eigen::VectorXf result(r.size());
+    for (std::size_t node = 0; node < inverse_diagonal_.size(); ++node) {
+      const auto i = static_cast<Eigen::Index>(3 * node);
+      result.segment<3>(i) = inverse_diagonal_[node] * r.segment<3>(i);
+    }
+    return result;
+  }
+
+  // Of D⁻¹ A, by power iteration from where the last one ended; as before for any threads.
+  void find_largest_eigenvalue() {
+    const auto size = static_cast<Eigen::Index>(3 * elements_.node_count());
+    constexpr int kAtFirst = 20, kLater = 1;
+    const int steps = slowest_.size() == size ? kLater : kAtFirst;
+    if (slowest_.size() != size) {
+      slowest_.resize(size);
+      for (Eigen::Index i = 0; i < size; ++i) slowest_[i] = (i * 7919) % 13 < 6 ? 1.0f : -1.0f;
+    }
+    for (int step = 0; step < steps; ++step) {
+      slowest_ /= slowest_.norm();
+      product_.setZero(size);
+      multiply_add(slowest_.data(), product_.data());
+      slowest_ = over_diagonal(product_);
+      largest_eigenvalue_ = slowest_.norm();
+    }
+  }
+
+  // x += ω D⁻¹ r. Long steps damp what the vertices below cannot show; below 2 by the largest
+  // eigenvalue they converge.
+  void smooth(const Eigen::VectorXf& r, Eigen::VectorXf& x) const {
+    constexpr float kStep = 1.75f;
+    x += kStep / (kSafety * largest_eigenvalue_) * over_diagonal(r);
+  }
+
+  // z = M⁻¹ r, scaled so that single precision neither overflows nor vanishes.
+  void precondition(const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
+    const double scale = residual.norm();
+    right_ = (residual / scale).cast<float>();
+    x_.setZero(right_.size());
+    smooth(right_, x_);
+    set_residual();
+    correct_by_vertices();
+    set_residual();
+    smooth(r_, x_);
+    z = scale * x_.cast<double>();
+  }
+
+  void set_residual() {
+    product_.setZero(x_.size());
+    multiply_add(x_.data(), product_.data());
+    r_ = right_ - product_;
+    clear_fixed(r_);
+  }
+
+  void correct_by_vertices() {
+    const std::size_t count = elements_.vertex_count();
+    std::vector<float>& right = multigrid_.right();
+    const auto place = [&](std::uint32_t v) { return 3 * std::size_t{hierarchy_.place_of[v]}; };
+    for (std::uint32_t v = 0; v < count; ++v) {
+      for (std::size_t i = 0; i < 3; ++i) right[place(v) + i] = r_[3 * std::size_t{v} + i];
+    }
+    for (std::size_t m = 0; m < elements_.midpoints().size(); ++m) {
+      for (const std::uint32_t end : elements_.midpoints()[m]) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          right[place(end) + i] += 0.5f * r_[3 * (count + m) + i];
+        }
+      }
+    }
+    for (const std::uint32_t i : multigrid_.fixed()) right[i] = 0.0f;
+    multigrid_.cycle();
+    const std::vector<float>& found = multigrid_.x();
+    for (std::uint32_t v = 0; v < count; ++v) {
+      for (std::size_t i = 0; i < 3; ++i) x_[3 * std::size_t{v} + i] += found[place(v) + i];
+    }
+    for (std::size_t m = 0; m < elements_.midpoints().size(); ++m) {
+      const auto [a, b] = elements_.midpoints()[m];
+      for (std::size_t i = 0; i < 3; ++i) {
+        x_[3 * (count + m) + i] += 0.5f * (found[place(a) + i] + found[place(b) + i]);
+      }
+    }
+    clear_fixed(x_);
+  }
+
+  // Power iteration comes from below.
+  static constexpr float kSafety = 1.1f;
+
+  const FiniteElements& elements_;
+  double tolerance_;
+  std::unique_ptr<QuadraticOperator> operator_;
+  NodeHierarchy hierarchy_;
+  VertexHessian vertices_;
+  Multigrid multigrid_;
+  std::vector<Coupling> couplings_;
+  std::vector<Mat3f> diagonal_, inverse_diagonal_;
+  std::vector<std::uint32_t> fixed_;
+  Eigen::VectorXf slowest_, right_, x_, r_, product_;
+  float largest_eigenvalue_ = 1.0f;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSystem> quadratic_system(const FiniteElements& elements,
+                                               Constitution constitution, double tolerance,
+                                               Run run) {
+  if (elements.order() != 2) return nullptr;
+  return std::make_unique<QuadraticSystem>(elements, constitution, tolerance, std::move(run));
+}
+
+}  // namespace tissue
