@@ -91,7 +91,7 @@ std::size_t BlockRows::bytes() const {
          (values_.size() + inverse_diagonal_.size()) * sizeof(float);
 }
 
-bool BlockRows::invert_diagonal(const std::vector<std::uint8_t>& fixed, float shift) {
+bool BlockRows::invert_diagonal(const std::vector<std::uint8_t>& fixed, float hold) {
   for (std::size_t row = 0; row < row_count(); ++row) {
     Eigen::Matrix3f own = Eigen::Map<const Eigen::Matrix3f>(block(diagonal_[row]));
     for (int i = 0; i < 3; ++i) {
@@ -99,7 +99,7 @@ bool BlockRows::invert_diagonal(const std::vector<std::uint8_t>& fixed, float sh
         own.row(i).setZero();
         own.col(i).setZero();
       }
-      own(i, i) = own(i, i) == 0.0f ? 1.0f : own(i, i) + shift;
+      own(i, i) = own(i, i) == 0.0f ? 1.0f : (1.0f + hold) * own(i, i);
     }
     const Eigen::LLT<Eigen::Matrix3f> factor(own);
     if (factor.info() != Eigen::Success) return false;

@@ -41,9 +41,10 @@ class BlockRows {
   std::size_t bytes() const;
 
   /// Makes ready to sweep over the coordinates for which `fixed` is not set, three flags for each
-  /// row: inverts the diagonal's blocks, with `shift` added, without what is fixed. Nothing resists
-  /// where the diagonal is zero. False unless all of them are positive definite.
-  bool invert_diagonal(const std::vector<std::uint8_t>& fixed, float shift);
+  /// row: inverts the diagonal's blocks without what is fixed, the diagonal made larger by a part
+  /// `hold` of itself. Nothing resists where it is zero. False unless all blocks are positive
+  /// definite.
+  bool invert_diagonal(const std::vector<std::uint8_t>& fixed, float hold);
 
   /// result = A x, x and result in double precision.
   void multiply(const double* x, double* result) const;

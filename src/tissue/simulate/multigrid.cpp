@@ -7,6 +7,10 @@
 namespace tissue {
 namespace {
 
+// By how much of itself the diagonal is made larger on coarser levels: nodes of a lattice with few
+// points around them may say the same as their neighbours.
+constexpr float kHold = 1e-5f;
+
 // What a factorisation of the coarsest level costs, counted in iterations: both by what they do to
 // numbers, and not by time, so that the same input has the same bits.
 double factorisation_cost(std::size_t coarsest_rows, std::size_t finest_blocks) {
@@ -28,38 +32,51 @@ BlockMatrix pattern_of(const BlockRows& matrix) {
 }  // namespace
 
 Multigrid::Multigrid(const NodeHierarchy& hierarchy, BlockRows& finest)
-    : hierarchy_(hierarchy), finest_(finest) {
-  const std::size_t finest_level = hierarchy.sizes.size() - 1;
-  levels_.resize(finest_level);
-  for (std::size_t l = finest_level; l-- > 0;) {
-    levels_[l].matrix = BlockRows(hierarchy.sizes[l], rows_below(l + 1));
+    : steps_(hierarchy.steps), node_at_(hierarchy.node_at), finest_(finest) {
+  levels_.resize(steps_.size());
+  for (std::size_t l = steps_.size(); l-- > 0;) {
+    levels_[l].matrix = BlockRows(steps_[l].coarse_size, rows_below(l + 1));
     find_targets(l + 1);
   }
-  for (const std::uint32_t size : hierarchy.sizes) {
+  for (std::size_t l = 0; l <= steps_.size(); ++l) {
     vectors_.emplace_back();
-    for (auto* one : {&vectors_.back().right, &vectors_.back().x, &vectors_.back().residual}) {
-      one->assign(3 * std::size_t{size} + 1, 0.0f);
+    for (auto* one : {&vectors_[l].right, &vectors_[l].x, &vectors_[l].residual}) {
+      one->assign(3 * matrix(l).row_count() + 1, 0.0f);
     }
   }
+  fixed_.resize(steps_.size() + 1);
   coarsest_matrix_ = pattern_of(matrix(0));
-  factorisation_cost_ = factorisation_cost(hierarchy.sizes[0], finest.block_count());
+  factorisation_cost_ = factorisation_cost(matrix(0).row_count(), finest.block_count());
+}
+
+void Multigrid::set_fixed(const std::vector<std::uint8_t>& fixed) {
+  for (std::size_t l = steps_.size() + 1; l-- > 0;) {
+    Fixed& own = fixed_[l];
+    own.flags.assign(3 * matrix(l).row_count(), 0);
+    own.touched.assign(matrix(l).row_count(), 0);
+    own.coordinates.clear();
+    if (l == steps_.size()) {
+      for (std::size_t i = 0; i < own.flags.size(); ++i) {
+        own.flags[i] = fixed[3 * std::size_t{node_at_[i / 3]} + i % 3];
+      }
+    } else if (steps_[l].nested) {
+      const std::vector<std::uint8_t>& finer = fixed_[l + 1].flags;
+      std::copy_n(finer.begin(), own.flags.size(), own.flags.begin());
+    }
+    for (std::uint32_t i = 0; i < own.flags.size(); ++i) {
+      if (own.flags[i] == 0) continue;
+      own.coordinates.push_back(i);
+      own.touched[i / 3] = 1;
+    }
+  }
 }
 
 bool Multigrid::prepare(const std::vector<std::uint8_t>& fixed) {
-  const std::size_t count = hierarchy_.node_at.size();
-  fixed_.resize(3 * count);
-  touched_.resize(count);
-  fixed_coordinates_.clear();
-  for (std::uint32_t i = 0; i < 3 * count; ++i) {
-    fixed_[i] = fixed[3 * std::size_t{hierarchy_.node_at[i / 3]} + i % 3];
-    if (fixed_[i] != 0) fixed_coordinates_.push_back(i);
-  }
-  std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
-  for (const std::uint32_t i : fixed_coordinates_) touched_[i / 3] = 1;
-  for (std::size_t l = levels_.size(); l > 0; --l) make_coarser(l);
-  if (!finest_.invert_diagonal(fixed_, 0.0f)) return false;
+  set_fixed(fixed);
+  for (std::size_t l = steps_.size(); l > 0; --l) make_coarser(l);
+  if (!finest_.invert_diagonal(fixed_.back().flags, 0.0f)) return false;
   for (std::size_t l = 1; l < levels_.size(); ++l) {
-    if (!levels_[l].matrix.invert_diagonal(fixed_, 0.0f)) return false;
+    if (!levels_[l].matrix.invert_diagonal(fixed_[l].flags, kHold)) return false;
   }
   return factorise_coarsest();
 }
@@ -79,21 +96,16 @@ bool Multigrid::serves(int iterations) {
   return true;
 }
 
-// A vertex's parents on the next coarser level: itself if it is there already.
-Edge Multigrid::ancestors(std::size_t l, std::uint32_t place) const {
-  if (place < hierarchy_.sizes[l - 1]) return {place, place};
-  return hierarchy_.parents[place - hierarchy_.sizes[0]];
-}
-
-// Which vertices of the next coarser level are coupled through those of level l.
+// Which nodes of the next coarser level are coupled through those of level l.
 std::vector<std::vector<std::uint32_t>> Multigrid::rows_below(std::size_t l) const {
-  std::vector<std::vector<std::uint32_t>> rows(hierarchy_.sizes[l - 1]);
+  const Coarsening& step = steps_[l - 1];
+  std::vector<std::vector<std::uint32_t>> rows(step.coarse_size);
   const BlockRows& finer = matrix(l);
   for (std::uint32_t row = 0; row < finer.row_count(); ++row) {
     for (std::uint32_t k = finer.begin(row); k < finer.end(row); ++k) {
-      for (const std::uint32_t a : ancestors(l, row)) {
-        for (const std::uint32_t b : ancestors(l, finer.column(k))) rows[a].push_back(b);
-      }
+      step.for_parents(row, [&](std::uint32_t a, float) {
+        step.for_parents(finer.column(k), [&](std::uint32_t b, float) { rows[a].push_back(b); });
+      });
     }
   }
   for (std::vector<std::uint32_t>& row : rows) {
@@ -104,47 +116,47 @@ std::vector<std::vector<std::uint32_t>> Multigrid::rows_below(std::size_t l) con
 }
 
 void Multigrid::find_targets(std::size_t l) {
+  const Coarsening& step = steps_[l - 1];
   Level& coarser = levels_[l - 1];
   const BlockRows& finer = matrix(l);
-  coarser.first_target.push_back(0);
   for (std::uint32_t row = 0; row < finer.row_count(); ++row) {
-    const Edge from = ancestors(l, row);
     for (std::uint32_t k = finer.begin(row); k < finer.end(row); ++k) {
-      const Edge to = ancestors(l, finer.column(k));
-      const int row_count = from[0] == from[1] ? 1 : 2, column_count = to[0] == to[1] ? 1 : 2;
-      for (int i = 0; i < row_count; ++i) {
-        for (int j = 0; j < column_count; ++j) {
-          coarser.targets.push_back(coarser.matrix.find(from[i], to[j]));
-        }
-      }
-      coarser.first_target.push_back(static_cast<std::uint32_t>(coarser.targets.size()));
+      step.for_parents(row, [&](std::uint32_t a, float) {
+        step.for_parents(finer.column(k), [&](std::uint32_t b, float) {
+          coarser.targets.push_back(coarser.matrix.find(a, b));
+        });
+      });
     }
   }
+  coarser.targets.shrink_to_fit();
 }
 
 // Galerkin's matrix Pᵀ A P of the next coarser level. What is fixed takes no part.
 void Multigrid::make_coarser(std::size_t l) {
+  const Coarsening& step = steps_[l - 1];
   Level& coarser = levels_[l - 1];
   const BlockRows& finer = matrix(l);
+  const Fixed& fixed = fixed_[l];
   coarser.matrix.set_zero();
+  const std::uint32_t* target = coarser.targets.data();
   for (std::uint32_t row = 0; row < finer.row_count(); ++row) {
     for (std::uint32_t k = finer.begin(row); k < finer.end(row); ++k) {
       const std::uint32_t column = finer.column(k);
       const float* from = finer.block(k);
       float free[9];
-      if (touched_[row] != 0 || touched_[column] != 0) {
+      if (fixed.touched[row] != 0 || fixed.touched[column] != 0) {
         for (std::size_t i = 0; i < 9; ++i) {
-          const bool is_fixed = fixed_[3 * std::size_t{row} + i % 3] != 0 ||
-                                fixed_[3 * std::size_t{column} + i / 3] != 0;
+          const bool is_fixed = fixed.flags[3 * std::size_t{row} + i % 3] != 0 ||
+                                fixed.flags[3 * std::size_t{column} + i / 3] != 0;
           free[i] = is_fixed ? 0.0f : from[i];
         }
         from = free;
       }
-      const std::uint32_t begin = coarser.first_target[k], end = coarser.first_target[k + 1];
-      const float share = 1.0f / static_cast<float>(end - begin);
-      for (std::uint32_t t = begin; t < end; ++t) {
-        add_block(share, from, coarser.matrix.block(coarser.targets[t]));
-      }
+      step.for_parents(row, [&](std::uint32_t, float of_row) {
+        step.for_parents(column, [&](std::uint32_t, float of_column) {
+          add_block(of_row * of_column, from, coarser.matrix.block(*target++));
+        });
+      });
     }
   }
 }
@@ -153,8 +165,7 @@ void Multigrid::make_coarser(std::size_t l) {
 // most.
 bool Multigrid::factorise_coarsest() {
   const BlockRows& coarsest = matrix(0);
-  const std::vector<std::uint8_t> fixed(fixed_.begin(),
-                                        fixed_.begin() + 3 * std::ptrdiff_t{hierarchy_.sizes[0]});
+  const std::vector<std::uint8_t>& fixed = fixed_[0].flags;
   if (!is_worn_ && fixed == coarsest_fixed_) {
     is_fresh_ = false;
     return true;
@@ -164,6 +175,10 @@ bool Multigrid::factorise_coarsest() {
     for (std::uint32_t k = coarsest.begin(row); k <= coarsest.diagonal(row); ++k) {
       const Eigen::Map<const Eigen::Matrix3f> block(coarsest.block(k));
       coarsest_matrix_.add(row, coarsest.column(k), block.cast<double>());
+      if (row != coarsest.column(k)) continue;
+      Mat3 hold = Mat3::Zero();
+      for (int i = 0; i < 3; ++i) hold(i, i) = block(i, i) > 0.0f ? kHold * block(i, i) : 1.0;
+      coarsest_matrix_.add(row, row, hold);
     }
   }
   is_worn_ = !coarsest_->prepare(coarsest_matrix_, fixed, 0.0);
@@ -191,23 +206,19 @@ void Multigrid::cycle(std::size_t l) {
 }
 
 void Multigrid::clear_fixed(std::size_t l, std::vector<float>& vector) const {
-  for (const std::uint32_t i : fixed_coordinates_) {
-    if (i >= 3 * hierarchy_.sizes[l]) return;
-    vector[i] = 0.0f;
-  }
+  for (const std::uint32_t i : fixed_[l].coordinates) vector[i] = 0.0f;
 }
 
 void Multigrid::restrict_to(std::size_t coarse) {
   const std::vector<float>& fine = vectors_[coarse + 1].residual;
   std::vector<float>& right = vectors_[coarse].right;
-  const std::size_t size = hierarchy_.sizes[coarse], fine_size = hierarchy_.sizes[coarse + 1];
-  std::copy_n(fine.begin(), 3 * size, right.begin());
-  for (std::size_t place = size; place < fine_size; ++place) {
-    for (const std::uint32_t parent : hierarchy_.parents[place - hierarchy_.sizes[0]]) {
+  std::fill(right.begin(), right.end(), 0.0f);
+  for (std::uint32_t row = 0; row < steps_[coarse].fine_size; ++row) {
+    steps_[coarse].for_parents(row, [&](std::uint32_t parent, float weight) {
       for (std::size_t i = 0; i < 3; ++i) {
-        right[3 * std::size_t{parent} + i] += 0.5f * fine[3 * place + i];
+        right[3 * std::size_t{parent} + i] += weight * fine[3 * std::size_t{row} + i];
       }
-    }
+    });
   }
   clear_fixed(coarse, right);
 }
@@ -215,24 +226,24 @@ void Multigrid::restrict_to(std::size_t coarse) {
 void Multigrid::prolongate_from(std::size_t coarse) {
   const std::vector<float>& x = vectors_[coarse].x;
   std::vector<float>& fine = vectors_[coarse + 1].x;
-  const std::size_t size = hierarchy_.sizes[coarse], fine_size = hierarchy_.sizes[coarse + 1];
-  for (std::size_t i = 0; i < 3 * size; ++i) fine[i] += x[i];
-  for (std::size_t place = size; place < fine_size; ++place) {
-    const Edge& ends = hierarchy_.parents[place - hierarchy_.sizes[0]];
-    for (std::size_t i = 0; i < 3; ++i) {
-      fine[3 * place + i] +=
-          0.5f * (x[3 * std::size_t{ends[0]} + i] + x[3 * std::size_t{ends[1]} + i]);
-    }
+  for (std::uint32_t row = 0; row < steps_[coarse].fine_size; ++row) {
+    steps_[coarse].for_parents(row, [&](std::uint32_t parent, float weight) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        fine[3 * std::size_t{row} + i] += weight * x[3 * std::size_t{parent} + i];
+      }
+    });
   }
   clear_fixed(coarse + 1, fine);
 }
 
 std::size_t Multigrid::bytes() const {
-  std::size_t sum = coarsest_matrix_.bytes() + fixed_.size() + touched_.size() +
-                    fixed_coordinates_.capacity() * sizeof(std::uint32_t);
+  std::size_t sum = coarsest_matrix_.bytes();
+  for (const Fixed& fixed : fixed_) {
+    sum += fixed.flags.size() + fixed.touched.size() +
+           fixed.coordinates.capacity() * sizeof(std::uint32_t);
+  }
   for (const Level& level : levels_) {
-    sum += level.matrix.bytes() +
-           (level.first_target.capacity() + level.targets.capacity()) * sizeof(std::uint32_t);
+    sum += level.matrix.bytes() + level.targets.capacity() * sizeof(std::uint32_t);
   }
   for (const Vectors& vectors : vectors_) sum += 3 * vectors.x.size() * sizeof(float);
   return sum;

@@ -8,9 +8,9 @@
 
 namespace tissue {
 
-/// One V-cycle over the hierarchy from which vertices were made, as an inverse to go by: one sweep
-/// of Gauss and Seidel before and one in the opposite order after, Galerkin's coarse matrices, a
-/// factorisation on the coarsest level that is kept while it serves.
+/// One V-cycle over a hierarchy of levels, as an inverse to go by: one sweep of Gauss and Seidel
+/// before and one in the opposite order after, Galerkin's coarse matrices, a factorisation on the
+/// coarsest level that is kept while it serves.
 class Multigrid {
  public:
   /// `finest` is in the order of the hierarchy; references must outlive this.
@@ -29,24 +29,30 @@ class Multigrid {
   std::vector<float>& right() { return vectors_.back().right; }
   const std::vector<float>& x() const { return vectors_.back().x; }
   /// Coordinates that are fixed, in the order of the hierarchy.
-  const std::vector<std::uint32_t>& fixed() const { return fixed_coordinates_; }
+  const std::vector<std::uint32_t>& fixed() const { return fixed_.back().coordinates; }
   std::size_t bytes() const;
 
  private:
-  // A level below the finest, and how it is made from the next finer one: for each block there the
-  // blocks here to which it adds a half or a quarter, from first_target[block] on.
+  // A level below the finest; where Galerkin's product adds each block of the next finer one, times
+  // the weights of its row's and its column's parents.
   struct Level {
     BlockRows matrix;
-    std::vector<std::uint32_t> first_target, targets;
+    std::vector<std::uint32_t> targets;
   };
   struct Vectors {
     std::vector<float> right, x, residual;
   };
 
+  // Three flags for each node; whether any of a node's is set; coordinates whose are.
+  struct Fixed {
+    std::vector<std::uint8_t> flags, touched;
+    std::vector<std::uint32_t> coordinates;
+  };
+
   const BlockRows& matrix(std::size_t l) const {
     return l == levels_.size() ? finest_ : levels_[l].matrix;
   }
-  Edge ancestors(std::size_t l, std::uint32_t place) const;
+  void set_fixed(const std::vector<std::uint8_t>& fixed);
   std::vector<std::vector<std::uint32_t>> rows_below(std::size_t l) const;
   void find_targets(std::size_t l);
   void make_coarser(std::size_t l);
@@ -56,14 +62,13 @@ class Multigrid {
   void prolongate_from(std::size_t coarse);
   void clear_fixed(std::size_t l, std::vector<float>& vector) const;
 
-  const NodeHierarchy& hierarchy_;
+  const std::vector<Coarsening>& steps_;
+  const std::vector<std::uint32_t>& node_at_;
   BlockRows& finest_;
   // The coarsest first.
   std::vector<Level> levels_;
   std::vector<Vectors> vectors_;
-  // By place: three flags each; whether any of them is set; coordinates for which they are.
-  std::vector<std::uint8_t> fixed_, touched_;
-  std::vector<std::uint32_t> fixed_coordinates_;
+  std::vector<Fixed> fixed_;
   std::unique_ptr<LinearSolver> coarsest_ = direct_solver();
   BlockMatrix coarsest_matrix_;
   std::vector<std::uint8_t> coarsest_fixed_;

@@ -107,7 +107,7 @@ class MultigridSystem : public LinearSystem {
 std::unique_ptr<LinearSystem> multigrid_system(const FiniteElements& elements, double tolerance,
                                                Run run) {
   NodeHierarchy hierarchy(elements);
-  if (elements.order() != 1 || hierarchy.sizes.size() < 2) return nullptr;
+  if (elements.order() != 1 || hierarchy.steps.empty()) return nullptr;
   return std::make_unique<MultigridSystem>(elements, std::move(hierarchy), tolerance,
                                            std::move(run));
 }

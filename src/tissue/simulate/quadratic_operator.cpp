@@ -5,6 +5,9 @@
 namespace tissue {
 namespace {
 
+using FourFloats = float __attribute__((vector_size(16)));
+using FourDoubles = double __attribute__((vector_size(32)));
+
 // Numbers at eight places, in single precision, less what is at eight other ones.
 inline FloatLanes gather(const float* x, const std::uint32_t* at, const float* from) {
   return FloatLanes{x[at[0]], x[at[1]], x[at[2]], x[at[3]],
@@ -12,14 +15,12 @@ inline FloatLanes gather(const float* x, const std::uint32_t* at, const float* f
          FloatLanes{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]};
 }
 inline FloatLanes gather(const double* x, const std::uint32_t* at, const double* from) {
-  using Four = double __attribute__((vector_size(32)));
-  using FourFloats = float __attribute__((vector_size(16)));
   FourFloats halves[2];
   for (int half = 0; half < 2; ++half, at += 4, from += 4) {
-    Four base;
+    FourDoubles base;
     std::memcpy(&base, from, sizeof base);
-    halves[half] =
-        __builtin_convertvector(Four{x[at[0]], x[at[1]], x[at[2]], x[at[3]]} - base, FourFloats);
+    halves[half] = __builtin_convertvector(
+        FourDoubles{x[at[0]], x[at[1]], x[at[2]], x[at[3]]} - base, FourFloats);
   }
   FloatLanes result;
   std::memcpy(&result, halves, sizeof result);
@@ -31,8 +32,9 @@ class QuadraticElements : public QuadraticOperator {
  public:
   explicit QuadraticElements(const FiniteElements& elements);
 
+  using QuadraticOperator::add_mass;
   void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) override;
-  void multiply_add(const float* x, float* result) const override { multiply_any(x, result); }
+  void add_stiffness(const float* x, float* result) const override { multiply_any(x, result); }
   void multiply_add(const double* x, double* result) const override { multiply_any(x, result); }
   std::size_t bytes() const override { return packs_.size() * sizeof(Pack); }
 
@@ -45,7 +47,9 @@ class QuadraticElements : public QuadraticOperator {
   };
   template <class Scalar>
   void multiply_any(const Scalar* x, Scalar* result) const;
-  void multiply(const Pack& pack, const FloatLanes (&nodes)[10][3], const FloatLanes (&first)[3],
+  void stiffness(const Pack& pack, const FloatLanes (&nodes)[10][3],
+                 FloatLanes (&forces)[10][3]) const;
+  void add_mass(const Pack& pack, const FloatLanes (&nodes)[10][3], const FloatLanes (&first)[3],
                 FloatLanes (&forces)[10][3]) const;
   std::size_t lanes_in_use(std::size_t pack) const {
     const std::size_t first = pack * kFloatLanes;
@@ -85,9 +89,8 @@ void QuadraticElements<Form>::add_elements(std::size_t first_pack,
 // summed up once: point q differs from the others by what corner q and the midpoints next to it
 // add.
 template <class Form>
-void QuadraticElements<Form>::multiply(const Pack& pack, const FloatLanes (&nodes)[10][3],
-                                       const FloatLanes (&first)[3],
-                                       FloatLanes (&forces)[10][3]) const {
+void QuadraticElements<Form>::stiffness(const Pack& pack, const FloatLanes (&nodes)[10][3],
+                                        FloatLanes (&forces)[10][3]) const {
   const auto near = static_cast<float>(elements_.quadrature()[0].place[0]);
   const auto far = static_cast<float>(elements_.quadrature()[0].place[1]);
   const float corner = 4.0f * far - 1.0f, middle = 4.0f * far, extra = 4.0f * (near - far);
@@ -134,7 +137,12 @@ void QuadraticElements<Form>::multiply(const Pack& pack, const FloatLanes (&node
       }
     }
   }
-  if (mass_ == 0.0) return;
+}
+
+template <class Form>
+void QuadraticElements<Form>::add_mass(const Pack& pack, const FloatLanes (&nodes)[10][3],
+                                       const FloatLanes (&first)[3],
+                                       FloatLanes (&forces)[10][3]) const {
   const FloatLanes density = static_cast<float>(mass_) * pack.volumes;
   add_quadratic_mass(nodes, density * (1.0f / 420.0f), forces);
   // What the whole element moves by.
@@ -165,7 +173,8 @@ void QuadraticElements<Form>::multiply_any(const Scalar* x, Scalar* result) cons
       nodes[0][i] = FloatLanes{};
       for (int a = 1; a < 10; ++a) nodes[a][i] = gather(x + i, places[a], from);
     }
-    multiply(pack, nodes, first, forces);
+    stiffness(pack, nodes, forces);
+    if (std::is_same_v<Scalar, double> && mass_ > 0.0) add_mass(pack, nodes, first, forces);
     for (std::size_t lane = 0; lane < lanes_in_use(p); ++lane) {
       for (int a = 0; a < 10; ++a) {
         Scalar* to = result + places[a][lane];
@@ -174,6 +183,7 @@ void QuadraticElements<Form>::multiply_any(const Scalar* x, Scalar* result) cons
     }
   }
 }
+
 }  // namespace
 
 std::unique_ptr<QuadraticOperator> quadratic_operator(const FiniteElements& elements,

@@ -20,8 +20,9 @@ class QuadraticOperator {
   /// `density` [kg/(m³ s²)].
   void add_mass(double density) { mass_ += density; }
   /// result += A x
-  virtual void multiply_add(const float* x, float* result) const = 0;
   virtual void multiply_add(const double* x, double* result) const = 0;
+  /// The same without mass, to precondition with.
+  virtual void add_stiffness(const float* x, float* result) const = 0;
   virtual std::size_t bytes() const = 0;
   double mass() const { return mass_; }
 

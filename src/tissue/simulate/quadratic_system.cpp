@@ -70,12 +70,17 @@ class QuadraticSystem : public LinearSystem {
 
   void finish() override {
     vertices_.finish();
+    // In the proportions of the mass matrix's diagonal (Hinton, Rock, Zienkiewicz, 1976).
+    lumped_.assign(elements_.node_count(), 0.0f);
     for (std::size_t e = 0; e < elements_.element_count(); ++e) {
-      const double unit = operator_->mass() / 420.0 * elements_.volume(e);
+      const double mass = operator_->mass() * elements_.volume(e);
       for (int a = 0; a < 10; ++a) {
-        diagonal_[elements_.nodes(e)[a]].diagonal().array() +=
-            static_cast<float>(unit * MassMatrix::quadratic_share(a, a));
+        lumped_[elements_.nodes(e)[a]] +=
+            static_cast<float>(mass * (a < 4 ? 1.0 / 36.0 : 4.0 / 27.0));
       }
+    }
+    for (std::size_t node = 0; node < lumped_.size(); ++node) {
+      diagonal_[node].diagonal().array() += lumped_[node];
     }
     for (const Coupling& one : couplings_) {
       if (one.a == one.b) diagonal_[one.a] += one.block;
@@ -173,8 +178,7 @@ class QuadraticSystem : public LinearSystem {
   }
 
   template <class Scalar>
-  void multiply_add(const Scalar* x, Scalar* result) const {
-    operator_->multiply_add(x, result);
+  void add_couplings(const Scalar* x, Scalar* result) const {
     using Vector = Eigen::Matrix<Scalar, 3, 1>;
     for (const Coupling& one : couplings_) {
       const std::size_t a = 3 * std::size_t{one.a}, b = 3 * std::size_t{one.b};
@@ -183,6 +187,22 @@ class QuadraticSystem : public LinearSystem {
       if (a == b) continue;
       Eigen::Map<Vector>(result + b) += block.transpose() * Eigen::Map<const Vector>(x + a);
     }
+  }
+
+  void multiply_add(const double* x, double* result) const {
+    operator_->multiply_add(x, result);
+    add_couplings(x, result);
+  }
+
+  // product_ = A x, near enough to precondition with: mass is lumped.
+  void multiply_roughly(const Eigen::VectorXf& x) {
+    product_.resize(x.size());
+    for (std::size_t node = 0; node < lumped_.size(); ++node) {
+      const auto i = static_cast<Eigen::Index>(3 * node);
+      product_.segment<3>(i) = lumped_[node] * x.segment<3>(i);
+    }
+    operator_->add_stiffness(x.data(), product_.data());
+    add_couplings(x.data(), product_.data());
   }
 
   // Without what is fixed.
@@ -227,8 +247,7 @@ class QuadraticSystem : public LinearSystem {
     }
     for (int step = 0; step < steps; ++step) {
       slowest_ /= slowest_.norm();
-      product_.setZero(size);
-      multiply_add(slowest_.data(), product_.data());
+      multiply_roughly(slowest_);
       slowest_ = over_diagonal(product_);
       largest_eigenvalue_ = slowest_.norm();
     }
@@ -255,8 +274,7 @@ class QuadraticSystem : public LinearSystem {
   }
 
   void set_residual() {
-    product_.setZero(x_.size());
-    multiply_add(x_.data(), product_.data());
+    multiply_roughly(x_);
     r_ = right_ - product_;
     clear_fixed(r_);
   }
@@ -301,6 +319,7 @@ class QuadraticSystem : public LinearSystem {
   Multigrid multigrid_;
   std::vector<Coupling> couplings_;
   std::vector<Mat3f> diagonal_, inverse_diagonal_;
+  std::vector<float> lumped_;
   std::vector<std::uint32_t> fixed_;
   Eigen::VectorXf slowest_, right_, x_, r_, product_;
   float largest_eigenvalue_ = 1.0f;
