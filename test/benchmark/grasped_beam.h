@@ -34,6 +34,8 @@ class GraspedBeam {
     scene.anchors = {end};
     scene.tools[0].radius = 0.02;
     scene.tools[0].grasps = true;
+    // All of the beam, for models that have a range.
+    scene.push.range = 0.5;
     return scene;
   }
   tissue::ToolPose pose() const {

@@ -147,7 +147,7 @@ void BlockRows::sweep_back(const float* b, float* x) const {
   for (std::size_t row = row_count(); row-- > 0;) {
     // Its own block as well: what the row is out of balance by is what it moves by.
     Sum sum;
-    for (std::uint32_t k = begin_[row]; k < begin_[row + 1]; ++k) {
+    for (std::uint32_t k = begin_[row + 1]; k-- > begin_[row];) {
       sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
     float* const own = x + 3 * row;
