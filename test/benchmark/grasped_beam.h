@@ -9,8 +9,9 @@ namespace tissue_test {
 /// grasped at the other: what a step costs while the tool moves on.
 class GraspedBeam {
  public:
-  GraspedBeam(const std::array<int, 3>& cells, tissue::Model model, int order)
-      : scene_(description(model, order),
+  GraspedBeam(const std::array<int, 3>& cells, tissue::Model model, int order,
+              const std::vector<tissue::Effect>& effects = {})
+      : scene_(description(model, order, effects),
                std::make_shared<tissue::Body>(kuhn_block(cells, {0.2, 0.1, 0.1}, 2))) {
     scene_.step(pose(), 0.0);
   }
@@ -23,8 +24,10 @@ class GraspedBeam {
   const tissue::Scene& scene() const { return scene_; }
 
  private:
-  static tissue::SceneDescription description(tissue::Model model, int order) {
+  static tissue::SceneDescription description(tissue::Model model, int order,
+                                              const std::vector<tissue::Effect>& effects) {
     tissue::SceneDescription scene;
+    scene.effects = effects;
     scene.model = model;
     scene.element_order = order;
     scene.material.young = {{0.0, 5e4}};

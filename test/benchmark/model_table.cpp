@@ -57,9 +57,11 @@ void print(const Row& row, int order) {
               row.tissue ? std::to_string(order).c_str() : "–", row.purpose,
               beam.scene().body().tets.size(), times.first, times.median);
   if (!row.tissue) {
-    std::printf("– | – |\n");
+    std::printf("– | – | – |\n");
     return;
   }
+  tissue_test::GraspedBeam moving(cells, row.model, order, {tissue::Effect::kInertia});
+  std::printf("%.3g | ", step_times(moving).median);
   const double sag = tissue_test::beam_sag(cells, order, *row.tissue);
   const tissue::TetMesh ball = tissue_test::refined_ball(order == 1 ? 0.010 : 0.020);
   const double error = tissue_test::tumour_sphere_error(ball, order, *row.tissue);
@@ -71,8 +73,9 @@ void print(const Row& row, int order) {
 
 int main() {
   std::printf(
-      "| model | order | for | tets of the beam | first / next step [ms] | sag of the beam | error "
-      "on the tumour sphere (tets) |\n|---|---|---|---|---|---|---|\n");
+      "| model | order | for | tets of the beam | first / next step [ms] | next step with inertia "
+      "[ms] | sag of the beam | error on the tumour sphere (tets) "
+      "|\n|---|---|---|---|---|---|---|---|\n");
   for (const Row& row : kRows) {
     print(row, 1);
     if (row.tissue && *row.tissue) print(row, 2);
