@@ -27,4 +27,26 @@ struct PairBlocks {
   }
 };
 
+/// What the gradients of the four barycentric coordinates have with each other, for a ≤ b.
+struct CornerCouplings {
+  LaneMatrix<Lanes> of[4][4] = {};
+
+  CornerCouplings(const LaneMatrix<Lanes>& barycentric, const MaterialTensor& tensor) {
+    Lanes turned[3][3];
+    for (int a = 0; a < 3; ++a) turn(tensor, barycentric[a], turned[a]);
+    for (int a = 0; a < 3; ++a) {
+      for (int b = a; b < 3; ++b) add_coupling(tensor, turned[a], turned[b], of[a + 1][b + 1]);
+    }
+    // The first gradient is minus the sum of the others.
+    for_entries([&](int r, int c) {
+      for (int b = 1; b < 4; ++b) {
+        for (int a = 1; a < 4; ++a) {
+          of[0][b][r][c] -= a <= b ? of[a][b][r][c] : of[b][a][c][r];
+        }
+        of[0][0][r][c] -= of[0][b][r][c];
+      }
+    });
+  }
+};
+
 }  // namespace tissue

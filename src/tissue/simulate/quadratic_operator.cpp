@@ -79,9 +79,7 @@ void QuadraticElements<Form>::add_elements(std::size_t first_pack,
   for (std::size_t i = 0; i < tensors.size(); ++i) {
     const std::size_t first = (first_pack + i / kPoints) * kLanes;
     Form& point = packs_[first / kFloatLanes].points[i % kPoints];
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      point.store(tensors[i], lane, first % kFloatLanes + lane);
-    }
+    point.store(tensors[i], first % kFloatLanes);
   }
 }
 

@@ -2,7 +2,7 @@
 
 #include "conjugate_gradients.h"
 #include "multigrid.h"
-#include "material_tensor.h"
+#include "pair_blocks.h"
 #include "quadratic_operator.h"
 #include "tissue/simulate/mass_matrix.h"
 #include "vertex_hessian.h"
@@ -143,19 +143,28 @@ class QuadraticSystem : public LinearSystem {
   }
 
  private:
-  // The blocks of nodes with themselves.
+  // The blocks of nodes with themselves, from what the barycentric coordinates' gradients have with
+  // each other.
   void add_diagonal(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) {
     const std::vector<QuadraturePoint>& points = elements_.quadrature();
     for (std::size_t i = 0; i < tensors.size(); i += points.size()) {
       const std::size_t pack = first_pack + i / points.size();
       LaneMatrix<Lanes> own[10] = {};
       for (std::size_t q = 0; q < points.size(); ++q) {
-        Lanes gradients[10][3];
-        shape_gradients<2>(points[q], elements_.pack(pack).gradients, gradients);
-        for (int a = 0; a < 10; ++a) {
-          Lanes turned[3];
-          turn(tensors[i + q], gradients[a], turned);
-          add_coupling(tensors[i + q], turned, turned, own[a]);
+        const CornerCouplings pairs(elements_.pack(pack).gradients, tensors[i + q]);
+        const std::array<double, 4>& place = points[q].place;
+        for (int a = 0; a < 4; ++a) {
+          const double share = (4.0 * place[a] - 1.0) * (4.0 * place[a] - 1.0);
+          for_entries([&](int r, int c) { own[a][r][c] += share * pairs.of[a][a][r][c]; });
+        }
+        for (int e = 0; e < 6; ++e) {
+          const auto [a, b] = kTetEdges[e];
+          const double aa = 16.0 * place[b] * place[b], bb = 16.0 * place[a] * place[a],
+                       ab = 16.0 * place[a] * place[b];
+          for_entries([&](int r, int c) {
+            own[4 + e][r][c] += aa * pairs.of[a][a][r][c] + bb * pairs.of[b][b][r][c] +
+                                ab * (pairs.of[a][b][r][c] + pairs.of[a][b][c][r]);
+          });
         }
       }
       for (std::size_t lane = 0; lane < elements_.lanes_in_use(pack); ++lane) {

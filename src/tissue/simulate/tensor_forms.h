@@ -20,30 +20,32 @@ inline LaneMatrix<FloatLanes> rotation_of(const FloatLanes (&q)[4]) {
            {xz - wy, yz + wx, 1.0f - (xx + yy)}}};
 }
 
-inline void store_rotation(const Mat3& rotation, std::size_t lane, FloatLanes (&q)[4]) {
-  const Eigen::Quaterniond quaternion(rotation);
-  for (int k = 0; k < 4; ++k) q[k][lane] = static_cast<float>(quaternion.coeffs()[k]);
-}
-
-inline Mat3 matrix_in(const LaneMatrix<Lanes>& m, std::size_t lane) {
-  Mat3 result;
-  for_entries([&](int i, int j) { result(i, j) = m[i][j][lane]; });
-  return result;
+/// From one lane to another.
+inline void store_rotation(const LaneMatrix<Lanes>& rotation, std::size_t from, std::size_t to,
+                           FloatLanes (&q)[4]) {
+  Mat3 one;
+  for_entries([&](int i, int j) { one(i, j) = rotation[i][j][from]; });
+  const Eigen::Quaterniond quaternion(one);
+  for (int k = 0; k < 4; ++k) q[k][to] = static_cast<float>(quaternion.coeffs()[k]);
 }
 
 /// Any isotropic energy.
 struct StretchForm {
   FloatLanes u[4], v[4], scaling[6], own[3], crossed[3];
 
-  void store(const MaterialTensor& tensor, std::size_t from, std::size_t to) {
-    store_rotation(matrix_in(tensor.u, from), to, u);
-    store_rotation(matrix_in(tensor.v, from), to, v);
-    int next = 0;
-    for (int k = 0; k < 3; ++k) {
-      own[k][to] = static_cast<float>(tensor.own[k][from]);
-      crossed[k][to] = static_cast<float>(tensor.crossed[k][from]);
-      for (int j = k; j < 3; ++j) {
-        scaling[next++][to] = static_cast<float>(tensor.scaling[k][j][from]);
+  /// In the lanes from `first` on.
+  void store(const MaterialTensor& tensor, std::size_t first) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t to = first + lane;
+      store_rotation(tensor.u, lane, to, u);
+      store_rotation(tensor.v, lane, to, v);
+      int next = 0;
+      for (int k = 0; k < 3; ++k) {
+        own[k][to] = static_cast<float>(tensor.own[k][lane]);
+        crossed[k][to] = static_cast<float>(tensor.crossed[k][lane]);
+        for (int j = k; j < 3; ++j) {
+          scaling[next++][to] = static_cast<float>(tensor.scaling[k][j][lane]);
+        }
       }
     }
   }
@@ -68,18 +70,22 @@ struct StretchForm {
 struct TurnedForm {
   FloatLanes rotation[4], turning[6], double_mu, lambda;
 
-  void store(const MaterialTensor& tensor, std::size_t from, std::size_t to) {
-    const Mat3 v = matrix_in(tensor.v, from);
-    store_rotation(matrix_in(tensor.u, from) * v.transpose(), to, rotation);
-    Vec3 twist;
-    for (int k = 0; k < 3; ++k) twist[k] = tensor.own[k][from] - tensor.crossed[k][from];
-    const Mat3 resists = v * twist.asDiagonal() * v.transpose();
-    int next = 0;
-    for (int k = 0; k < 3; ++k) {
-      for (int j = k; j < 3; ++j) turning[next++][to] = static_cast<float>(resists(k, j));
+  void store(const MaterialTensor& tensor, std::size_t first) {
+    const LaneMatrix<Lanes> turn = product_transpose(tensor.u, tensor.v);
+    LaneMatrix<Lanes> scaled;
+    for_entries(
+        [&](int i, int k) { scaled[i][k] = (tensor.own[k] - tensor.crossed[k]) * tensor.v[i][k]; });
+    const LaneMatrix<Lanes> resists = product_transpose(scaled, tensor.v);
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t to = first + lane;
+      store_rotation(turn, lane, to, rotation);
+      int next = 0;
+      for (int k = 0; k < 3; ++k) {
+        for (int j = k; j < 3; ++j) turning[next++][to] = static_cast<float>(resists[k][j][lane]);
+      }
+      lambda[to] = static_cast<float>(tensor.scaling[0][1][lane]);
+      double_mu[to] = static_cast<float>(tensor.scaling[0][0][lane] - tensor.scaling[0][1][lane]);
     }
-    lambda[to] = static_cast<float>(tensor.scaling[0][1][from]);
-    double_mu[to] = static_cast<float>(tensor.scaling[0][0][from] - tensor.scaling[0][1][from]);
   }
 
   LaneMatrix<FloatLanes> stress(const LaneMatrix<FloatLanes>& change) const {
