@@ -1,4 +1,5 @@
 // The iterative way of solving, against the direct one.
+#include "tissue/simulate/damping.h"
 #include "tissue/simulate/multigrid_system.h"
 #include "tissue/simulate/quadratic_system.h"
 
@@ -84,12 +85,44 @@ TEST(Multigrid, AnswersAsTheFactorisationDoes) {
     expect_same(with_inclusion(body_of(tissue_test::refined_ball(0.020)), Vec3::Zero(), 0.012),
                 order, contrast);
     expect_same(halved_block(), order, kSoft, Constitution::kNeoHookean);
+    // Without a hierarchy, over lattices.
+    expect_same(tissue_test::kuhn_block({16, 8, 8}, {0.2, 0.1, 0.1}), order, kSoft);
   }
 }
 
-TEST(Multigrid, NeedsAHierarchy) {
+TEST(Multigrid, LeavesFewVerticesToFactorisations) {
   const FiniteElements plain(tissue_test::kuhn_block({2, 2, 2}, {1, 1, 1}), 1);
   EXPECT_FALSE(multigrid_system(plain, 1e-3));
+}
+
+// Energies that have the same elements, such as tissue and its damping, add up.
+TEST(Multigrid, AddsWhatSeveralEnergiesHave) {
+  for (const int order : {1, 2}) {
+    Problem problem(halved_block(), order, Constitution::kCorotational, kSoft);
+    const MassMatrix mass(problem.elements, 1000.0);
+    DampingEnergy damping(problem.energy, problem.elements, mass, 3.0, 0.02);
+    damping.begin_step(problem.positions, 0.01);
+    Eigen::VectorXd bent = problem.positions, product = Eigen::VectorXd::Zero(bent.size()),
+                    expected = product;
+    for (Eigen::Index i = 0; i < bent.size(); i += 3) bent[i + 2] += 1.5 * bent[i] * bent[i];
+    const auto direct = direct_system(problem.elements);
+    const auto iterative =
+        order == 1 ? multigrid_system(problem.elements, 1e-3)
+                   : quadratic_system(problem.elements, Constitution::kCorotational, 1e-3);
+    // Twice: what was added before is gone.
+    for (int pass = 0; pass < 2; ++pass) {
+      for (LinearSystem* system : {direct.get(), iterative.get()}) {
+        system->set_zero();
+        problem.energy.evaluate(bent, nullptr, system);
+        damping.evaluate(bent, nullptr, system);
+        system->finish();
+      }
+    }
+    const Eigen::VectorXd way = bent - problem.positions + 0.01 * bent;
+    direct->multiply_add(way, expected);
+    iterative->multiply_add(way, product);
+    EXPECT_LE((product - expected).norm(), 1e-4 * expected.norm());
+  }
 }
 
 TEST(Multigrid, LeavesToOthersWhatItCannotSolve) {

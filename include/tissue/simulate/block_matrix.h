@@ -20,21 +20,10 @@ class BlockMatrix {
   void set_zero();
   /// Adds a block to row `a` and column `b`; the transposed block counts as added to (b, a).
   void add(std::uint32_t a, std::uint32_t b, const Mat3& block);
-  /// Adds a multiple of a matrix that has the same blocks.
-  void add(const BlockMatrix& other, double factor);
   std::size_t bytes() const;
   std::size_t node_count() const { return begin_.empty() ? 0 : begin_.size() - 1; }
   /// The largest entry of the diagonal; not finite if one of them is not.
   double largest_diagonal() const;
-  /// Calls body(row, column, block) for every block of the lower triangle.
-  template <class Body>
-  void for_each_block(const Body& body) const {
-    for (std::size_t row = 0; row < node_count(); ++row) {
-      for (std::size_t k = begin_[row]; k < begin_[row + 1]; ++k) {
-        body(static_cast<std::uint32_t>(row), columns_[k], blocks_[k]);
-      }
-    }
-  }
   /// result += A x, nodes numbered three after three.
   void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
 

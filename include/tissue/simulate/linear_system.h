@@ -17,19 +17,22 @@ class LinearSystem : public Hessian {
   /// Of the method.
   virtual const char* name() const = 0;
   virtual void set_zero() = 0;
-  /// To be called when everything has been added.
+  /// To be called when everything has been added, before anything is asked.
   virtual void finish() {}
   /// The largest entry of the diagonal; not finite if one of them is not.
   virtual double largest_diagonal() const = 0;
   /// result += A x
   virtual void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const = 0;
   /// Coordinates for which `fixed` is set, three flags for each node, have no equation; `shift` is
-  /// added to the diagonal of what is solved. False if A is seen not to be positive definite to
-  /// working precision.
+  /// added to the diagonal of what is solved; iterative methods take none but 0. False if A is seen
+  /// not to be positive definite to working precision.
   virtual bool prepare(const std::vector<std::uint8_t>& fixed, double shift) = 0;
   /// A x = b. All coordinates, of which fixed ones are not looked at and answered with zero. False
   /// if no x was found.
   virtual bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;
+  /// Forgets what it kept of earlier matrices to be quicker with the next: its answers are then
+  /// those of a new one, to the last bit.
+  virtual void forget() {}
   virtual std::size_t bytes() const = 0;
 };
 

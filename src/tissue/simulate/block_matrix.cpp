@@ -44,10 +44,6 @@ void BlockMatrix::add(std::uint32_t a, std::uint32_t b, const Mat3& block) {
   }
 }
 
-void BlockMatrix::add(const BlockMatrix& other, double factor) {
-  for (std::size_t k = 0; k < blocks_.size(); ++k) blocks_[k] += factor * other.blocks_[k];
-}
-
 double BlockMatrix::largest_diagonal() const {
   double largest = 0.0, sum = 0.0;
   // The last block of a row of the lower triangle is the diagonal's.

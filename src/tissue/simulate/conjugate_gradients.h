@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
+
 namespace tissue {
 
 /// Conjugate gradients for A x = b from x = 0, until ‖b − A x‖ ≤ tolerance ‖b‖, in truth and not
@@ -15,6 +17,7 @@ int conjugate_gradients(const Eigen::VectorXd& b, double tolerance, const Multip
   constexpr int kMaxIterations = 500;
   const double wanted = tolerance * b.norm();
   x.setZero(b.size());
+  if (!std::isfinite(wanted)) return -1;
   Eigen::VectorXd residual = b, direction, z(b.size()), product(b.size());
   double before = 0.0;
   for (int i = 0; i < kMaxIterations; ++i) {

@@ -39,11 +39,13 @@ void Equilibrium::hold(const std::vector<std::uint8_t>& fixed_nodes) {
 }
 
 void Equilibrium::hold_coordinates(const std::vector<std::uint8_t>& fixed) {
-  fixed_ = fixed;
-  is_prepared_ = false;
   if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end()) {
     throw InputError(ErrorCode::kParam, "anchors: every vertex is held");
   }
+  fixed_ = fixed;
+  is_prepared_ = false;
+  system_->forget();
+  if (fallback_) fallback_->forget();
 }
 
 double Equilibrium::evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
@@ -95,6 +97,7 @@ bool Equilibrium::prepare_active() {
 }
 
 bool Equilibrium::use_fallback(const Eigen::VectorXd& positions) {
+  is_prepared_ = false;
   if (!make_fallback_ || (fallback_ && active_ == fallback_.get())) return false;
   if (!fallback_) fallback_ = make_fallback_();
   active_ = fallback_.get();

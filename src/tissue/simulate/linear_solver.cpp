@@ -10,8 +10,8 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-// The order of elimination is found once for a pattern: as long as the number of entries stays the
-// same, so does the pattern.
+// The order of elimination is found once for a pattern, which a matrix's blocks and what is fixed
+// in it decide.
 template <class Decomposition>
 class Direct : public LinearSolver {
  public:
@@ -28,24 +28,26 @@ class Direct : public LinearSolver {
     number_.clear();
     free_count_ = 0;
     for (const std::uint8_t one : fixed) number_.push_back(one != 0 ? -1 : free_count_++);
+    if (free_count_ == 0) return true;
     Matrix lower = matrix.lower_triangle(number_, free_count_);
     if (shift > 0.0) lower.diagonal().array() += shift;
-    if (lower.nonZeros() != entries_ || lower.rows() != rows_) {
+    if (fixed != fixed_ || lower.nonZeros() != entries_) {
       decomposition_.analyzePattern(lower);
       entries_ = lower.nonZeros();
-      rows_ = lower.rows();
+      fixed_ = fixed;
     }
     decomposition_.factorize(lower);
     return decomposition_.info() == Eigen::Success && is_definite();
   }
 
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
+    x.setZero(b.size());
+    if (free_count_ == 0) return true;
     Eigen::VectorXd free(free_count_);
     for (std::size_t i = 0; i < number_.size(); ++i) {
       if (number_[i] >= 0) free[number_[i]] = b[static_cast<Eigen::Index>(i)];
     }
     const Eigen::VectorXd found = decomposition_.solve(free);
-    x.setZero(b.size());
     for (std::size_t i = 0; i < number_.size(); ++i) {
       if (number_[i] >= 0) x[static_cast<Eigen::Index>(i)] = found[number_[i]];
     }
@@ -70,7 +72,8 @@ class Direct : public LinearSolver {
   // For each coordinate its number among the free ones, or −1.
   std::vector<int> number_;
   int free_count_ = 0;
-  Eigen::Index entries_ = -1, rows_ = -1;
+  std::vector<std::uint8_t> fixed_;
+  Eigen::Index entries_ = -1;
 };
 
 }  // namespace

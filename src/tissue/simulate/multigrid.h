@@ -24,6 +24,9 @@ class Multigrid {
   /// factorisation makes sense.
   bool serves(int iterations);
 
+  /// What was kept is not kept any more.
+  void forget() { is_worn_ = true; }
+
   /// x = M⁻¹ b in the order of the hierarchy: writes right(), calls this, reads x().
   void cycle() { cycle(levels_.size()); }
   std::vector<float>& right() { return vectors_.back().right; }

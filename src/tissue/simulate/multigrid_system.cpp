@@ -26,6 +26,7 @@ class MultigridSystem : public LinearSystem {
     hessian_.add_elements(first_pack, tensors);
   }
   void finish() override { hessian_.finish(); }
+  void forget() override { multigrid_.forget(); }
   double largest_diagonal() const override { return hessian_.largest_diagonal(); }
 
   void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const override {

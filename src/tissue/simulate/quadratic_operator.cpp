@@ -1,5 +1,7 @@
 #include "quadratic_operator.h"
 
+#include "element_lanes.h"
+
 #include "tensor_forms.h"
 
 namespace tissue {
@@ -36,18 +38,23 @@ class QuadraticElements : public QuadraticOperator {
   void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) override;
   void add_stiffness(const float* x, float* result) const override { multiply_any(x, result); }
   void multiply_add(const double* x, double* result) const override { multiply_any(x, result); }
-  std::size_t bytes() const override { return packs_.size() * sizeof(Pack); }
+  void set_zero() override {
+    QuadraticOperator::set_zero();
+    used_ = 0;
+  }
+  std::size_t bytes() const override {
+    return packs_.size() * (sizeof(Pack) + forms_.size() * kPoints * sizeof(Form));
+  }
 
  private:
   static constexpr int kPoints = 4;
   struct Pack {
     LaneMatrix<FloatLanes> gradients;
     FloatLanes volumes;
-    Form points[kPoints];
   };
   template <class Scalar>
   void multiply_any(const Scalar* x, Scalar* result) const;
-  void stiffness(const Pack& pack, const FloatLanes (&nodes)[10][3],
+  void stiffness(std::size_t p, const FloatLanes (&nodes)[10][3],
                  FloatLanes (&forces)[10][3]) const;
   void add_mass(const Pack& pack, const FloatLanes (&nodes)[10][3], const FloatLanes (&first)[3],
                 FloatLanes (&forces)[10][3]) const;
@@ -58,6 +65,10 @@ class QuadraticElements : public QuadraticOperator {
 
   const FiniteElements& elements_;
   std::vector<Pack> packs_;
+  // For each time that all elements were added, pack by pack and point by point; so many are in
+  // use.
+  std::vector<std::vector<Form>> forms_;
+  std::size_t used_ = 0;
 };
 
 template <class Form>
@@ -76,10 +87,13 @@ QuadraticElements<Form>::QuadraticElements(const FiniteElements& elements)
 template <class Form>
 void QuadraticElements<Form>::add_elements(std::size_t first_pack,
                                            const std::vector<MaterialTensor>& tensors) {
+  if (first_pack == 0 && ++used_ > forms_.size()) {
+    forms_.emplace_back(packs_.size() * kPoints);
+  }
+  std::vector<Form>& forms = forms_[used_ - 1];
   for (std::size_t i = 0; i < tensors.size(); ++i) {
     const std::size_t first = (first_pack + i / kPoints) * kLanes;
-    Form& point = packs_[first / kFloatLanes].points[i % kPoints];
-    point.store(tensors[i], first % kFloatLanes);
+    forms[first / kFloatLanes * kPoints + i % kPoints].store(tensors[i], first % kFloatLanes);
   }
 }
 
@@ -87,8 +101,9 @@ void QuadraticElements<Form>::add_elements(std::size_t first_pack,
 // summed up once: point q differs from the others by what corner q and the midpoints next to it
 // add.
 template <class Form>
-void QuadraticElements<Form>::stiffness(const Pack& pack, const FloatLanes (&nodes)[10][3],
+void QuadraticElements<Form>::stiffness(std::size_t p, const FloatLanes (&nodes)[10][3],
                                         FloatLanes (&forces)[10][3]) const {
+  const Pack& pack = packs_[p];
   const auto near = static_cast<float>(elements_.quadrature()[0].place[0]);
   const auto far = static_cast<float>(elements_.quadrature()[0].place[1]);
   const float corner = 4.0f * far - 1.0f, middle = 4.0f * far, extra = 4.0f * (near - far);
@@ -115,8 +130,13 @@ void QuadraticElements<Form>::stiffness(const Pack& pack, const FloatLanes (&nod
         differences[r][k] = common[k + 1][r] + extra * nodes[kBetween[k + 1][q]][r] - at_0;
       }
     }
-    const LaneMatrix<FloatLanes> stress =
-        pack.points[q].stress(product(differences, pack.gradients));
+    const LaneMatrix<FloatLanes> change = product(differences, pack.gradients);
+    const std::size_t point = p * kPoints + static_cast<std::size_t>(q);
+    LaneMatrix<FloatLanes> stress = forms_[0][point].stress(change);
+    for (std::size_t k = 1; k < used_; ++k) {
+      const LaneMatrix<FloatLanes> more = forms_[k][point].stress(change);
+      for_entries([&](int r, int c) { stress[r][c] += more[r][c]; });
+    }
     const LaneMatrix<FloatLanes> pull = product_transpose(stress, pack.gradients);
     for (int r = 0; r < 3; ++r) {
       const FloatLanes at[4] = {-(pull[r][0] + pull[r][1] + pull[r][2]), pull[r][0], pull[r][1],
@@ -156,7 +176,6 @@ void QuadraticElements<Form>::multiply_any(const Scalar* x, Scalar* result) cons
   static_assert(kFloatLanes == 8);
   const Scalar zeros[kFloatLanes] = {};
   for (std::size_t p = 0; p < packs_.size(); ++p) {
-    const Pack& pack = packs_[p];
     std::uint32_t places[10][kFloatLanes];
     for (std::size_t lane = 0; lane < kFloatLanes; ++lane) {
       const std::uint32_t* of_lane = elements_.nodes(p * kFloatLanes + lane);
@@ -171,8 +190,10 @@ void QuadraticElements<Form>::multiply_any(const Scalar* x, Scalar* result) cons
       nodes[0][i] = FloatLanes{};
       for (int a = 1; a < 10; ++a) nodes[a][i] = gather(x + i, places[a], from);
     }
-    stiffness(pack, nodes, forces);
-    if (std::is_same_v<Scalar, double> && mass_ > 0.0) add_mass(pack, nodes, first, forces);
+    stiffness(p, nodes, forces);
+    if (std::is_same_v<Scalar, double> && mass_ > 0.0) {
+      add_mass(packs_[p], nodes, first, forces);
+    }
     for (std::size_t lane = 0; lane < lanes_in_use(p); ++lane) {
       for (int a = 0; a < 10; ++a) {
         Scalar* to = result + places[a][lane];

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "element_lanes.h"
+#include "tissue/simulate/finite_elements.h"
 #include "tissue/simulate/constitutive.h"
 #include "tissue/simulate/hessian.h"
 
@@ -14,8 +14,8 @@ namespace tissue {
 class QuadraticOperator {
  public:
   virtual ~QuadraticOperator() = default;
-  void set_zero() { mass_ = 0.0; }
-  /// Elements that are added once more take the place of what they were.
+  virtual void set_zero() { mass_ = 0.0; }
+  /// All elements, from the first pack on; as often as there are energies that have them.
   virtual void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) = 0;
   /// `density` [kg/(m³ s²)].
   void add_mass(double density) { mass_ += density; }

@@ -9,6 +9,9 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+#include <cmath>
+
 namespace tissue {
 namespace {
 
@@ -38,6 +41,7 @@ class QuadraticSystem : public LinearSystem {
     operator_->set_zero();
     vertices_.set_zero();
     couplings_.clear();
+    is_finished_ = false;
     diagonal_.assign(elements_.node_count(), Mat3f::Zero());
   }
 
@@ -69,6 +73,8 @@ class QuadraticSystem : public LinearSystem {
   }
 
   void finish() override {
+    if (is_finished_) return;
+    is_finished_ = true;
     vertices_.finish();
     // In the proportions of the mass matrix's diagonal (Hinton, Rock, Zienkiewicz, 1976).
     lumped_.assign(elements_.node_count(), 0.0f);
@@ -85,6 +91,11 @@ class QuadraticSystem : public LinearSystem {
     for (const Coupling& one : couplings_) {
       if (one.a == one.b) diagonal_[one.a] += one.block;
     }
+  }
+
+  void forget() override {
+    slowest_.resize(0);
+    multigrid_.forget();
   }
 
   double largest_diagonal() const override {
@@ -109,8 +120,7 @@ class QuadraticSystem : public LinearSystem {
     const std::vector<std::uint8_t> of_vertices(
         fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(3 * elements_.vertex_count()));
     if (!multigrid_.prepare(of_vertices)) return false;
-    find_largest_eigenvalue();
-    return true;
+    return find_largest_eigenvalue();
   }
 
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
@@ -245,8 +255,8 @@ class QuadraticSystem : public LinearSystem {
     return result;
   }
 
-  // Of D⁻¹ A, by power iteration from where the last one ended; as before for any threads.
-  void find_largest_eigenvalue() {
+  // Of D⁻¹ A, by power iteration from where the last one ended, or from anew.
+  bool find_largest_eigenvalue() {
     const auto size = static_cast<Eigen::Index>(3 * elements_.node_count());
     constexpr int kAtFirst = 20, kLater = 1;
     const int steps = slowest_.size() == size ? kLater : kAtFirst;
@@ -255,11 +265,15 @@ class QuadraticSystem : public LinearSystem {
       for (Eigen::Index i = 0; i < size; ++i) slowest_[i] = (i * 7919) % 13 < 6 ? 1.0f : -1.0f;
     }
     for (int step = 0; step < steps; ++step) {
+      clear_fixed(slowest_);
       slowest_ /= slowest_.norm();
       multiply_roughly(slowest_);
       slowest_ = over_diagonal(product_);
       largest_eigenvalue_ = slowest_.norm();
     }
+    if (std::isfinite(largest_eigenvalue_) && largest_eigenvalue_ > 0.0f) return true;
+    forget();
+    return false;
   }
 
   // x += ω D⁻¹ r. Long steps damp what the vertices below cannot show; below 2 by the largest
@@ -332,6 +346,7 @@ class QuadraticSystem : public LinearSystem {
   std::vector<std::uint32_t> fixed_;
   Eigen::VectorXf slowest_, right_, x_, r_, product_;
   float largest_eigenvalue_ = 1.0f;
+  bool is_finished_ = false;
 };
 
 }  // namespace

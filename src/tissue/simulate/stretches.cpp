@@ -4,6 +4,8 @@
 
 #include <Eigen/SVD>
 
+#include <limits>
+
 namespace tissue {
 namespace {
 
@@ -51,6 +53,10 @@ struct Svd {
 
 // Seldom needed, and large: not to be inlined.
 __attribute__((noinline)) Svd svd_by_jacobi(const Mat3& f) {
+  if (!f.allFinite()) {
+    const Mat3 unknown = Mat3::Constant(std::numeric_limits<double>::quiet_NaN());
+    return {unknown, unknown, unknown.diagonal()};
+  }
   const Eigen::JacobiSVD<Mat3> svd(f, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Svd result = {svd.matrixU(), svd.matrixV(), svd.singularValues()};
   for (Mat3* basis : {&result.u, &result.v}) {
