@@ -1,4 +1,5 @@
 // What the stages of a Newton step cost: a bent beam, by order of the elements and size.
+// scripts/benchmark runs it and keeps the results.
 #include "support/bodies.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/inertia.h"
@@ -114,3 +115,5 @@ TISSUE_STAGE(stage_preconditioner);
 TISSUE_STAGE(stage_iterations);
 
 }  // namespace
+
+BENCHMARK_MAIN();
