@@ -20,7 +20,6 @@ class BlockMatrix {
   void set_zero();
   /// Adds a block to row `a` and column `b`; the transposed block counts as added to (b, a).
   void add(std::uint32_t a, std::uint32_t b, const Mat3& block);
-  std::size_t bytes() const;
   std::size_t node_count() const { return begin_.empty() ? 0 : begin_.size() - 1; }
   /// The largest entry of the diagonal; not finite if one of them is not.
   double largest_diagonal() const;

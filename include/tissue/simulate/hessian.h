@@ -22,8 +22,9 @@ class Hessian {
   virtual void add(std::uint32_t a, std::uint32_t b, const Mat3& block) = 0;
   /// Adds factor · M [factor in 1/s²].
   virtual void add_mass(const MassMatrix& mass, double factor) = 0;
-  /// Adds what elements are made of at their quadrature points, pack by pack and point by point
-  /// from the first pack on; multiplied by the point's weight and the element's volume.
+  /// Adds elements by d²ψ/dF² at their quadrature points, times the point's weight and the
+  /// element's volume: pack by pack and point by point, from the first pack on. An energy adds all
+  /// of its elements, pieces of them in order.
   virtual void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) = 0;
 };
 

@@ -33,7 +33,6 @@ class LinearSystem : public Hessian {
   /// Forgets what it kept of earlier matrices to be quicker with the next: its answers are then
   /// those of a new one, to the last bit.
   virtual void forget() {}
-  virtual std::size_t bytes() const = 0;
 };
 
 /// Factorises: CHOLMOD's supernodal way where the package was built with it, else as below.

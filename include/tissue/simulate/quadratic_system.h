@@ -6,11 +6,12 @@
 
 namespace tissue {
 
-/// For elements of order 2: conjugate gradients, with vectors in double, over what the elements do
-/// to vectors, which is never a matrix. Preconditioned by a step of Jacobi's over all nodes before and
-/// after a multigrid cycle over the vertices alone.
+/// For elements of order 2, nothing for others: conjugate gradients, with vectors in double, over
+/// what the elements do to vectors, which is never a matrix. Preconditioned by a step of Jacobi's
+/// over all nodes before and after a multigrid cycle over the vertices alone.
 ///
-/// `tolerance`: ‖b − A x‖ ≤ tolerance ‖b‖. Elements must outlive it.
+/// `constitution` must be that of the energies. `tolerance`: ‖b − A x‖ ≤ tolerance ‖b‖; `run` says
+/// how many threads assemble. Elements must outlive it.
 std::unique_ptr<LinearSystem> quadratic_system(const FiniteElements& elements,
                                                Constitution constitution, double tolerance,
                                                Run run = {});

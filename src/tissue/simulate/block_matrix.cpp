@@ -56,11 +56,6 @@ double BlockMatrix::largest_diagonal() const {
   return std::isfinite(sum) ? largest : sum;
 }
 
-std::size_t BlockMatrix::bytes() const {
-  return begin_.size() * sizeof(std::size_t) + columns_.size() * sizeof(std::uint32_t) +
-         blocks_.size() * sizeof(Mat3);
-}
-
 void BlockMatrix::multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const {
   for (std::size_t row = 0; row < node_count(); ++row) {
     const auto i = static_cast<Eigen::Index>(3 * row);

@@ -86,11 +86,6 @@ std::uint32_t BlockRows::find(std::uint32_t row, std::uint32_t column) const {
 
 void BlockRows::set_zero() { std::fill(values_.begin(), values_.end(), 0.0f); }
 
-std::size_t BlockRows::bytes() const {
-  return (begin_.size() + columns_.size() + diagonal_.size()) * sizeof(std::uint32_t) +
-         (values_.size() + inverse_diagonal_.size()) * sizeof(float);
-}
-
 bool BlockRows::invert_diagonal(const std::vector<std::uint8_t>& fixed, float hold) {
   for (std::size_t row = 0; row < row_count(); ++row) {
     Eigen::Matrix3f own = Eigen::Map<const Eigen::Matrix3f>(block(diagonal_[row]));

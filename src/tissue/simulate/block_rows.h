@@ -38,7 +38,6 @@ class BlockRows {
   float* block(std::uint32_t number) { return &values_[9 * std::size_t{number}]; }
   const float* block(std::uint32_t number) const { return &values_[9 * std::size_t{number}]; }
   void set_zero();
-  std::size_t bytes() const;
 
   /// Makes ready to sweep over the coordinates for which `fixed` is not set, three flags for each
   /// row: inverts the diagonal's blocks without what is fixed, the diagonal made larger by a part

@@ -28,7 +28,6 @@ class DirectSystem : public LinearSystem {
     return solver_->prepare(hessian_.matrix(), fixed, shift);
   }
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override { return solver_->solve(b, x); }
-  std::size_t bytes() const override { return hessian_.matrix().bytes(); }
 
  private:
   AssembledHessian hessian_;

@@ -236,17 +236,4 @@ void Multigrid::prolongate_from(std::size_t coarse) {
   clear_fixed(coarse + 1, fine);
 }
 
-std::size_t Multigrid::bytes() const {
-  std::size_t sum = coarsest_matrix_.bytes();
-  for (const Fixed& fixed : fixed_) {
-    sum += fixed.flags.size() + fixed.touched.size() +
-           fixed.coordinates.capacity() * sizeof(std::uint32_t);
-  }
-  for (const Level& level : levels_) {
-    sum += level.matrix.bytes() + level.targets.capacity() * sizeof(std::uint32_t);
-  }
-  for (const Vectors& vectors : vectors_) sum += 3 * vectors.x.size() * sizeof(float);
-  return sum;
-}
-
 }  // namespace tissue

@@ -33,7 +33,6 @@ class Multigrid {
   const std::vector<float>& x() const { return vectors_.back().x; }
   /// Coordinates that are fixed, in the order of the hierarchy.
   const std::vector<std::uint32_t>& fixed() const { return fixed_.back().coordinates; }
-  std::size_t bytes() const;
 
  private:
   // A level below the finest; where Galerkin's product adds each block of the next finer one, times

@@ -71,8 +71,6 @@ class MultigridSystem : public LinearSystem {
     return true;
   }
 
-  std::size_t bytes() const override { return hessian_.bytes() + multigrid_.bytes(); }
-
  private:
   void multiply(const Eigen::VectorXd& x, Eigen::VectorXd& product) const {
     hessian_.rows().multiply(x.data(), product.data());

@@ -42,9 +42,6 @@ class QuadraticElements : public QuadraticOperator {
     QuadraticOperator::set_zero();
     used_ = 0;
   }
-  std::size_t bytes() const override {
-    return packs_.size() * (sizeof(Pack) + forms_.size() * kPoints * sizeof(Form));
-  }
 
  private:
   static constexpr int kPoints = 4;

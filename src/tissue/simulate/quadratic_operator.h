@@ -23,7 +23,6 @@ class QuadraticOperator {
   virtual void multiply_add(const double* x, double* result) const = 0;
   /// The same without mass, to precondition with.
   virtual void add_stiffness(const float* x, float* result) const = 0;
-  virtual std::size_t bytes() const = 0;
   double mass() const { return mass_; }
 
  protected:

@@ -146,12 +146,6 @@ class QuadraticSystem : public LinearSystem {
     return true;
   }
 
-  std::size_t bytes() const override {
-    return operator_->bytes() + vertices_.bytes() + multigrid_.bytes() +
-           diagonal_.capacity() * sizeof(Mat3f) +
-           static_cast<std::size_t>(4 * slowest_.size()) * sizeof(float);
-  }
-
  private:
   // The blocks of nodes with themselves, from what the barycentric coordinates' gradients have with
   // each other.

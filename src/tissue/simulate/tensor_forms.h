@@ -29,7 +29,9 @@ inline void store_rotation(const LaneMatrix<Lanes>& rotation, std::size_t from, 
   for (int k = 0; k < 4; ++k) q[k][to] = static_cast<float>(quaternion.coeffs()[k]);
 }
 
-/// Any isotropic energy.
+/// What is kept of a material's tensor at a quadrature point of eight elements, in single
+/// precision, and how it answers a change of F, for any isotropic energy. Rotations are quaternions
+/// (x, y, z, w), symmetric matrices come without their lower half.
 struct StretchForm {
   FloatLanes u[4], v[4], scaling[6], own[3], crossed[3];
 
@@ -64,9 +66,9 @@ struct StretchForm {
   }
 };
 
-/// Energies whose answer to a strain is the same in all directions, and which only turns make
-/// different: small strain, as it is or turned along. With D = Rᵀ dF it is R (2μ sym D + λ tr D I +
-/// [T ω]×), where ω is the axis of the skew part of D and T what resists turning.
+/// The same for energies whose answer to a strain is the same in all directions, and which only
+/// turns make different: small strain, as it is or turned along. With D = Rᵀ dF it is R (2μ sym D +
+/// λ tr D I + [T ω]×), where ω is the axis of the skew part of D and T what resists turning.
 struct TurnedForm {
   FloatLanes rotation[4], turning[6], double_mu, lambda;
 

@@ -162,10 +162,4 @@ double VertexHessian::largest_diagonal() const {
   return std::isfinite(sum) ? largest : sum;
 }
 
-std::size_t VertexHessian::bytes() const {
-  return rows_.bytes() + pairs_.size() * sizeof(pairs_[0]) +
-         across_.size() * sizeof(std::uint32_t) + own_.size() * sizeof(Mat3) +
-         buffer_.capacity() * sizeof(float);
-}
-
 }  // namespace tissue

@@ -25,7 +25,6 @@ class VertexHessian : public Hessian {
   BlockRows& rows() { return rows_; }
   /// The largest entry of the diagonal; not finite if one of them is not.
   double largest_diagonal() const;
-  std::size_t bytes() const;
 
  private:
   const FiniteElements& elements_;
