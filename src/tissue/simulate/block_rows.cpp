@@ -1,6 +1,6 @@
 #include "block_rows.h"
 
-#include <Eigen/Cholesky>
+#include "block_jacobi.h"
 
 #include <algorithm>
 #include <cstring>
@@ -19,33 +19,25 @@ inline Three load(const float* from) {
 }
 inline void store(const Three& value, float* to) { std::memcpy(to, &value, 3 * sizeof(float)); }
 
-inline WideThree load_wide(const float* from) {
-  return __builtin_convertvector(load(from), WideThree);
-}
-
 // Block times vector.
 inline Three times(const float* block, const float* x) {
   return load(block) * x[0] + load(block + 3) * x[1] + load(block + 6) * x[2];
 }
 
+inline Three column(const float* from, float) { return load(from); }
+inline WideThree column(const float* from, double) {
+  return __builtin_convertvector(load(from), WideThree);
+}
+
 // A sum of blocks times vectors, column by column, so that additions need not wait for each other.
+template <class Vector>
 struct Sum {
-  Three column[3] = {};
-  void add(const float* block, const float* x) {
-    column[0] += load(block) * x[0];
-    column[1] += load(block + 3) * x[1];
-    column[2] += load(block + 6) * x[2];
+  Vector columns[3] = {};
+  template <class Scalar>
+  void add(const float* block, const Scalar* x) {
+    for (int j = 0; j < 3; ++j) columns[j] += column(block + 3 * j, x[j]) * x[j];
   }
-  Three total() const { return column[0] + column[1] + column[2]; }
-};
-struct WideSum {
-  WideThree column[3] = {};
-  void add(const float* block, const double* x) {
-    column[0] += load_wide(block) * x[0];
-    column[1] += load_wide(block + 3) * x[1];
-    column[2] += load_wide(block + 6) * x[2];
-  }
-  WideThree total() const { return column[0] + column[1] + column[2]; }
+  Vector total() const { return columns[0] + columns[1] + columns[2]; }
 };
 
 // What a row moves by, from what the others leave of b.
@@ -88,28 +80,17 @@ void BlockRows::set_zero() { std::fill(values_.begin(), values_.end(), 0.0f); }
 
 bool BlockRows::invert_diagonal(const std::vector<std::uint8_t>& fixed, float hold) {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    Eigen::Matrix3f own = Eigen::Map<const Eigen::Matrix3f>(block(diagonal_[row]));
-    for (int i = 0; i < 3; ++i) {
-      if (fixed[3 * row + static_cast<std::size_t>(i)] != 0) {
-        own.row(i).setZero();
-        own.col(i).setZero();
-      }
-      own(i, i) = own(i, i) == 0.0f ? 1.0f : (1.0f + hold) * own(i, i);
-    }
-    const Eigen::LLT<Eigen::Matrix3f> factor(own);
-    if (factor.info() != Eigen::Success) return false;
-    Eigen::Map<Eigen::Matrix3f> inverse(&inverse_diagonal_[9 * row]);
-    inverse = factor.solve(Eigen::Matrix3f::Identity());
-    for (int i = 0; i < 3; ++i) {
-      if (fixed[3 * row + static_cast<std::size_t>(i)] != 0) inverse(i, i) = 0.0f;
-    }
+    const Eigen::Map<const Eigen::Matrix3f> own(block(diagonal_[row]));
+    const auto inverse = inverse_of_free(own, &fixed[3 * row], hold);
+    if (!inverse) return false;
+    std::memcpy(&inverse_diagonal_[9 * row], inverse->data(), sizeof *inverse);
   }
   return true;
 }
 
 void BlockRows::multiply(const double* x, double* result) const {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    WideSum sum;
+    Sum<WideThree> sum;
     for (std::uint32_t k = begin_[row]; k < begin_[row + 1]; ++k) {
       sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
@@ -120,7 +101,7 @@ void BlockRows::multiply(const double* x, double* result) const {
 
 void BlockRows::sweep_from_zero(const float* b, float* x) const {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    Sum sum;
+    Sum<Three> sum;
     for (std::uint32_t k = begin_[row]; k < diagonal_[row]; ++k) {
       sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
@@ -130,7 +111,7 @@ void BlockRows::sweep_from_zero(const float* b, float* x) const {
 
 void BlockRows::residual_after_sweep(const float* x, float* residual) const {
   for (std::size_t row = 0; row < row_count(); ++row) {
-    Sum sum;
+    Sum<Three> sum;
     for (std::uint32_t k = diagonal_[row] + 1; k < begin_[row + 1]; ++k) {
       sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }
@@ -141,7 +122,7 @@ void BlockRows::residual_after_sweep(const float* x, float* residual) const {
 void BlockRows::sweep_back(const float* b, float* x) const {
   for (std::size_t row = row_count(); row-- > 0;) {
     // Its own block as well: what the row is out of balance by is what it moves by.
-    Sum sum;
+    Sum<Three> sum;
     for (std::uint32_t k = begin_[row + 1]; k-- > begin_[row];) {
       sum.add(block(k), x + 3 * std::size_t{columns_[k]});
     }

@@ -19,11 +19,14 @@ class Multigrid {
   /// For the matrix as it is now. `fixed` holds three flags for each vertex. False if it is seen
   /// not to be positive definite.
   bool prepare(const std::vector<std::uint8_t>& fixed);
-  /// To be told how many iterations it took since; the coarsest level is then factorised anew with
-  /// the next matrix, if more than it should. −1: they led nowhere. True if trying again with a new
-  /// factorisation makes sense.
-  bool serves(int iterations);
-
+  /// Calls iterate(), which returns how many iterations it took or −1 where they led nowhere; once
+  /// more, with the coarsest level factorised anew, if that was because what was kept did not
+  /// serve.
+  template <class Iterate>
+  bool retry(const Iterate& iterate) {
+    const int iterations = iterate();
+    return serves(iterations) && (iterations >= 0 || serves(iterate()));
+  }
   /// What was kept is not kept any more.
   void forget() { is_worn_ = true; }
 
@@ -54,6 +57,9 @@ class Multigrid {
   const BlockRows& matrix(std::size_t l) const {
     return l == levels_.size() ? finest_ : levels_[l].matrix;
   }
+  // To be told how many iterations it took: if they were too many, the coarsest level is factorised
+  // anew with the next matrix. False if they led nowhere and nothing can be done.
+  bool serves(int iterations);
   void set_fixed(const std::vector<std::uint8_t>& fixed);
   std::vector<std::vector<std::uint32_t>> rows_below(std::size_t l) const;
   void find_targets(std::size_t l);

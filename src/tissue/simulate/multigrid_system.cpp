@@ -47,7 +47,7 @@ class MultigridSystem : public LinearSystem {
     Eigen::VectorXd right(b.size()), found;
     to_places(b, right);
     clear_fixed(right);
-    const auto iterate = [&] {
+    const bool found_it = multigrid_.retry([&] {
       return conjugate_gradients(
           right, tolerance_,
           [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
@@ -56,13 +56,8 @@ class MultigridSystem : public LinearSystem {
           },
           [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) { precondition(residual, z); },
           found);
-    };
-    int iterations = iterate();
-    if (!multigrid_.serves(iterations)) return false;
-    if (iterations < 0) {
-      iterations = iterate();
-      if (!multigrid_.serves(iterations)) return false;
-    }
+    });
+    if (!found_it) return false;
     x.resize(b.size());
     for (std::size_t place = 0; place < hierarchy_.node_at.size(); ++place) {
       x.segment<3>(3 * Eigen::Index{hierarchy_.node_at[place]}) =

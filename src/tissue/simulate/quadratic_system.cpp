@@ -1,13 +1,12 @@
 #include "tissue/simulate/quadratic_system.h"
 
+#include "block_jacobi.h"
 #include "conjugate_gradients.h"
 #include "multigrid.h"
 #include "pair_blocks.h"
 #include "quadratic_operator.h"
 #include "tissue/simulate/mass_matrix.h"
 #include "vertex_hessian.h"
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -94,7 +93,7 @@ class QuadraticSystem : public LinearSystem {
   }
 
   void forget() override {
-    slowest_.resize(0);
+    jacobi_.forget();
     multigrid_.forget();
   }
 
@@ -116,17 +115,19 @@ class QuadraticSystem : public LinearSystem {
     for (std::uint32_t i = 0; i < fixed.size(); ++i) {
       if (fixed[i] != 0) fixed_.push_back(i);
     }
-    if (shift != 0.0 || !invert_diagonal(fixed)) return false;
+    if (shift != 0.0 || !jacobi_.prepare(diagonal_, fixed)) return false;
     const std::vector<std::uint8_t> of_vertices(
         fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(3 * elements_.vertex_count()));
-    if (!multigrid_.prepare(of_vertices)) return false;
-    return find_largest_eigenvalue();
+    return multigrid_.prepare(of_vertices) &&
+           jacobi_.find_longest_step([&](const Eigen::VectorXf& from) -> const Eigen::VectorXf& {
+             return multiply_roughly(from);
+           });
   }
 
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
     Eigen::VectorXd right = b;
     clear_fixed(right);
-    const auto iterate = [&] {
+    return multigrid_.retry([&] {
       return conjugate_gradients(
           right, tolerance_,
           [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
@@ -136,14 +137,7 @@ class QuadraticSystem : public LinearSystem {
           },
           [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) { precondition(residual, z); },
           x);
-    };
-    int iterations = iterate();
-    if (!multigrid_.serves(iterations)) return false;
-    if (iterations < 0) {
-      iterations = iterate();
-      if (!multigrid_.serves(iterations)) return false;
-    }
-    return true;
+    });
   }
 
  private:
@@ -207,8 +201,8 @@ class QuadraticSystem : public LinearSystem {
     add_couplings(x, result);
   }
 
-  // product_ = A x, near enough to precondition with: mass is lumped.
-  void multiply_roughly(const Eigen::VectorXf& x) {
+  // A x, near enough to precondition with: mass is lumped.
+  const Eigen::VectorXf& multiply_roughly(const Eigen::VectorXf& x) {
     product_.resize(x.size());
     for (std::size_t node = 0; node < lumped_.size(); ++node) {
       const auto i = static_cast<Eigen::Index>(3 * node);
@@ -216,65 +210,7 @@ class QuadraticSystem : public LinearSystem {
     }
     operator_->add_stiffness(x.data(), product_.data());
     add_couplings(x.data(), product_.data());
-  }
-
-  // Without what is fixed.
-  bool invert_diagonal(const std::vector<std::uint8_t>& fixed) {
-    inverse_diagonal_.resize(diagonal_.size());
-    for (std::size_t node = 0; node < diagonal_.size(); ++node) {
-      Mat3f own = diagonal_[node];
-      const std::uint8_t* flags = &fixed[3 * node];
-      for (int i = 0; i < 3; ++i) {
-        if (flags[i] == 0) continue;
-        own.row(i).setZero();
-        own.col(i).setZero();
-        own(i, i) = 1.0f;
-      }
-      const Eigen::LLT<Mat3f> factor(own);
-      if (factor.info() != Eigen::Success) return false;
-      inverse_diagonal_[node] = factor.solve(Mat3f::Identity());
-      for (int i = 0; i < 3; ++i) {
-        if (flags[i] != 0) inverse_diagonal_[node](i, i) = 0.0f;
-      }
-    }
-    return true;
-  }
-
-  Eigen::VectorXf over_diagonal(const Eigen::VectorXf& r) const {
-    Eigen::VectorXf result(r.size());
-    for (std::size_t node = 0; node < inverse_diagonal_.size(); ++node) {
-      const auto i = static_cast<Eigen::Index>(3 * node);
-      result.segment<3>(i) = inverse_diagonal_[node] * r.segment<3>(i);
-    }
-    return result;
-  }
-
-  // Of D⁻¹ A, by power iteration from where the last one ended, or from anew.
-  bool find_largest_eigenvalue() {
-    const auto size = static_cast<Eigen::Index>(3 * elements_.node_count());
-    constexpr int kAtFirst = 20, kLater = 1;
-    const int steps = slowest_.size() == size ? kLater : kAtFirst;
-    if (slowest_.size() != size) {
-      slowest_.resize(size);
-      for (Eigen::Index i = 0; i < size; ++i) slowest_[i] = (i * 7919) % 13 < 6 ? 1.0f : -1.0f;
-    }
-    for (int step = 0; step < steps; ++step) {
-      clear_fixed(slowest_);
-      slowest_ /= slowest_.norm();
-      multiply_roughly(slowest_);
-      slowest_ = over_diagonal(product_);
-      largest_eigenvalue_ = slowest_.norm();
-    }
-    if (std::isfinite(largest_eigenvalue_) && largest_eigenvalue_ > 0.0f) return true;
-    forget();
-    return false;
-  }
-
-  // x += ω D⁻¹ r. Long steps damp what the vertices below cannot show; below 2 by the largest
-  // eigenvalue they converge.
-  void smooth(const Eigen::VectorXf& r, Eigen::VectorXf& x) const {
-    constexpr float kStep = 1.75f;
-    x += kStep / (kSafety * largest_eigenvalue_) * over_diagonal(r);
+    return product_;
   }
 
   // z = M⁻¹ r, scaled so that single precision neither overflows nor vanishes.
@@ -282,17 +218,16 @@ class QuadraticSystem : public LinearSystem {
     const double scale = residual.norm();
     right_ = (residual / scale).cast<float>();
     x_.setZero(right_.size());
-    smooth(right_, x_);
+    jacobi_.smooth(right_, x_);
     set_residual();
     correct_by_vertices();
     set_residual();
-    smooth(r_, x_);
+    jacobi_.smooth(r_, x_);
     z = scale * x_.cast<double>();
   }
 
   void set_residual() {
-    multiply_roughly(x_);
-    r_ = right_ - product_;
+    r_ = right_ - multiply_roughly(x_);
     clear_fixed(r_);
   }
 
@@ -325,9 +260,6 @@ class QuadraticSystem : public LinearSystem {
     clear_fixed(x_);
   }
 
-  // Power iteration comes from below.
-  static constexpr float kSafety = 1.1f;
-
   const FiniteElements& elements_;
   double tolerance_;
   std::unique_ptr<QuadraticOperator> operator_;
@@ -335,11 +267,11 @@ class QuadraticSystem : public LinearSystem {
   VertexHessian vertices_;
   Multigrid multigrid_;
   std::vector<Coupling> couplings_;
-  std::vector<Mat3f> diagonal_, inverse_diagonal_;
+  std::vector<Mat3f> diagonal_;
+  BlockJacobi jacobi_;
   std::vector<float> lumped_;
   std::vector<std::uint32_t> fixed_;
-  Eigen::VectorXf slowest_, right_, x_, r_, product_;
-  float largest_eigenvalue_ = 1.0f;
+  Eigen::VectorXf right_, x_, r_, product_;
   bool is_finished_ = false;
 };
 
