@@ -1,8 +1,8 @@
 // Runs a scene on a mesh file, without ROS.
-#include "pose_path.h"
 #include "program.h"
 #include "tissue/base/error.h"
 #include "tissue/base/mesh_file.h"
+#include "tissue/simulate/pose_path.h"
 #include "tissue/simulate/scene_file.h"
 
 #include <nlohmann/json.hpp>
@@ -60,9 +60,9 @@ Arguments arguments_from(const po::variables_map& given) {
 }
 
 // One path for each tool of the scene; empty for a tool without one.
-std::vector<std::vector<tissue_tools::StampedPose>> paths_for(
+std::vector<std::vector<tissue::StampedPose>> paths_for(
     const tissue::SceneDescription& scene, const std::vector<std::string>& options) {
-  std::vector<std::vector<tissue_tools::StampedPose>> paths(scene.tools.size());
+  std::vector<std::vector<tissue::StampedPose>> paths(scene.tools.size());
   for (const std::string& option : options) {
     const std::size_t equals = option.find('=');
     const std::string tool = equals == std::string::npos ? "" : option.substr(0, equals);
@@ -76,21 +76,9 @@ std::vector<std::vector<tissue_tools::StampedPose>> paths_for(
                        "--path: tool " + scene.tools[which].name + " has two paths");
     }
     paths[which] =
-        tissue_tools::read_poses(equals == std::string::npos ? option : option.substr(equals + 1));
+        tissue::read_poses(equals == std::string::npos ? option : option.substr(equals + 1));
   }
   return paths;
-}
-
-// One equilibrium; with inertia, as long as the scene says.
-std::vector<tissue_tools::Instant> instants_without_poses(const tissue::SceneDescription& scene) {
-  const bool swings = scene.has(tissue::Effect::kInertia);
-  const auto steps =
-      swings ? static_cast<std::size_t>(std::ceil(scene.duration / scene.dt - 1e-9)) : 0;
-  std::vector<tissue_tools::Instant> instants;
-  for (std::size_t i = 0; i <= steps; ++i) {
-    instants.push_back({static_cast<double>(i) * scene.dt, tissue::ToolPoses(scene.tools.size())});
-  }
-  return instants;
 }
 
 nlohmann::json triple(const tissue::Vec3& v) { return {v.x(), v.y(), v.z()}; }
@@ -154,7 +142,7 @@ nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
           {"flags", flags}};
 }
 
-Record run_instants(tissue::Scene& scene, const std::vector<tissue_tools::Instant>& instants) {
+Record run_instants(tissue::Scene& scene, const std::vector<tissue::Instant>& instants) {
   Record record;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const double dt = i == 0 ? 0.0 : instants[i].time - instants[i - 1].time;
@@ -190,9 +178,8 @@ void write_result(const tissue::TetMesh& mesh, const tissue::Scene& scene,
 
 void run(const Arguments& arguments) {
   const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
-  std::vector<tissue_tools::Instant> instants =
-      tissue_tools::merged(paths_for(description, arguments.paths));
-  if (instants.empty()) instants = instants_without_poses(description);
+  const std::vector<tissue::Instant> instants =
+      instants_of(description, paths_for(description, arguments.paths));
   const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
   tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
                       arguments.threads);

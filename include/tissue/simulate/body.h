@@ -22,6 +22,12 @@ struct Body {
 /// Throws InputError as check_mesh does.
 Body body_of(const TetMesh& mesh);
 
+/// A place in the material: barycentric coordinates in a tet.
+struct TetPlace {
+  std::uint32_t tet = 0;
+  std::array<double, 4> barycentric = {0.25, 0.25, 0.25, 0.25};
+};
+
 /// What a simulation moves.
 struct State {
   /// Deformed positions [m], in the order of the rest positions.

@@ -48,6 +48,10 @@ class FiniteElements {
   using Gradients = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, kMaxNodes, 3>;
   void gradients(std::size_t element, const QuadraturePoint& point, Gradients& result) const;
 
+  /// The value inside an element of what the nodes have, three after three.
+  Vec3 value_at(std::size_t element, const std::array<double, 4>& barycentric,
+                const Eigen::VectorXd& nodal) const;
+
   /// By how much each node of an element weighs in an integral over it, as a fraction of the
   /// volume: 1/4 each for order 1; −1/20 at corners and 1/5 at midpoints for order 2.
   double node_weight(int local) const { return order_ == 1 ? 0.25 : local < 4 ? -0.05 : 0.2; }

@@ -41,11 +41,12 @@ struct StepReport {
   std::optional<double> energy;
 };
 
-/// How a tet is strained: the von Mises stress of Cauchy's stress [Pa] and the largest principal
-/// stretch less one, means over its volume.
+/// How a tet is strained: the von Mises stress of Cauchy's stress [Pa], the largest principal
+/// stretch less one and det F, means over its volume.
 struct TetStrain {
   double von_mises = 0.0;
   double largest_strain = 0.0;
+  double det_f = 0.0;
 };
 
 /// A body that moves as a scene says: one model and the effects that the scene names.
@@ -78,6 +79,8 @@ class Scene {
   const std::vector<EffectCost>& effect_costs() const;
   /// Where the probes are now [m]; nothing for one that no tissue answers to.
   std::map<std::string, std::optional<Vec3>> probes() const;
+  /// Where places in the material are now [m], by the shape functions of the model's elements.
+  std::vector<Vec3> places(const std::vector<TetPlace>& material) const;
   /// Force of the tissue on each tool [N]; nothing for a model that knows none.
   std::vector<std::optional<Vec3>> tool_forces() const;
   /// Force of the tissue on each anchor [N]; empty for a model that knows none.

@@ -28,10 +28,16 @@ bool can_have(Model model, Effect effect);
 /// Effects by models as a table in Markdown, for the README.
 std::string effects_table();
 
+/// What a tool takes hold of: all tissue within its sphere, which then moves as if it were part of
+/// the tool, or a patch of the surface, which follows the tool in its middle and less and less
+/// towards its rim, where it stays. What a patch does to a body hardly depends on the mesh.
+enum class ToolShape { kSphere, kPatch };
+
 /// A tool as a scene names it.
 struct ToolDescription {
   std::string name = "tool";
-  /// Radius of the tool's sphere [m].
+  ToolShape shape = ToolShape::kSphere;
+  /// Of the sphere or the patch [m].
   double radius = 0.004;
   /// `press` takes hold of the tissue at the first touch; `grasp` when the jaw closes on it.
   bool grasps = false;

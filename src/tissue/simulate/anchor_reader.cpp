@@ -21,7 +21,7 @@ Coordinate coordinate_from(const YamlReader& reader) {
 
 CoordinateTriple triple_from(const YamlReader& reader) {
   const std::vector<YamlReader> entries = reader.entries();
-  if (entries.size() != 3) reader.refuse(ErrorCode::kScene, "is not a place [x, y, z]");
+  if (entries.size() != 3) reader.refuse("is not a place [x, y, z]");
   return {coordinate_from(entries[0]), coordinate_from(entries[1]), coordinate_from(entries[2])};
 }
 
@@ -30,11 +30,11 @@ PlaneAnchor plane_from(const YamlReader& reader) {
   PlaneAnchor plane;
   const std::string axis = reader.at("axis").word();
   if (axis != "x" && axis != "y" && axis != "z") {
-    reader.at("axis").refuse(ErrorCode::kScene, "'" + axis + "' is not x, y or z");
+    reader.at("axis").refuse("'" + axis + "' is not x, y or z");
   }
   plane.axis = axis[0] - 'x';
   if (reader.has("below") == reader.has("above")) {
-    reader.refuse(ErrorCode::kScene, "needs either below or above");
+    reader.refuse("needs either below or above");
   }
   if (reader.has("below")) plane.below = coordinate_from(reader.at("below"));
   if (reader.has("above")) plane.above = coordinate_from(reader.at("above"));
@@ -43,7 +43,7 @@ PlaneAnchor plane_from(const YamlReader& reader) {
 
 Anchor anchor_from(const YamlReader& reader) {
   reader.require_keys({"plane", "box", "sphere", "label", "vertices"});
-  if (reader.members().size() != 1) reader.refuse(ErrorCode::kScene, "is not one anchor");
+  if (reader.members().size() != 1) reader.refuse("is not one anchor");
   if (reader.has("plane")) return plane_from(reader.at("plane"));
   if (reader.has("box")) {
     reader.at("box").require_keys({"low", "high"});

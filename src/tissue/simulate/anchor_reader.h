@@ -1,7 +1,7 @@
 #pragma once
 
+#include "tissue/base/yaml_reader.h"
 #include "tissue/simulate/anchors.h"
-#include "yaml_reader.h"
 
 namespace tissue {
 

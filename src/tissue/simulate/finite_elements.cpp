@@ -76,6 +76,23 @@ void FiniteElements::gradients(std::size_t element, const QuadraturePoint& point
   }
 }
 
+Vec3 FiniteElements::value_at(std::size_t element, const std::array<double, 4>& barycentric,
+                              const Eigen::VectorXd& nodal) const {
+  const std::uint32_t* const own = nodes(element);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double at_corner = barycentric[i];
+    const double shape = order_ == 1 ? at_corner : at_corner * (2.0 * at_corner - 1.0);
+    sum += shape * nodal.segment<3>(3 * Eigen::Index{own[i]});
+  }
+  if (order_ == 1) return sum;
+  for (std::size_t e = 0; e < kTetEdges.size(); ++e) {
+    const auto& [a, b] = kTetEdges[e];
+    sum += 4.0 * barycentric[a] * barycentric[b] * nodal.segment<3>(3 * Eigen::Index{own[4 + e]});
+  }
+  return sum;
+}
+
 Eigen::VectorXd rest_positions(const FiniteElements& elements) {
   Eigen::VectorXd positions(static_cast<Eigen::Index>(3 * elements.node_count()));
   for (std::size_t node = 0; node < elements.node_count(); ++node) {

@@ -3,9 +3,7 @@
 #include "anchor_reader.h"
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 namespace tissue {
 namespace {
@@ -20,16 +18,16 @@ Material material_from(const YamlReader& reader, bool by_density) {
     material.young.clear();
     for (const YamlReader& row : young.entries()) {
       const std::vector<YamlReader> pair = row.entries();
-      if (pair.size() != 2) row.refuse(ErrorCode::kScene, "is not a pair [density, Pa]");
+      if (pair.size() != 2) row.refuse("is not a pair [density, Pa]");
       const double density = pair[0].number(0.0, kHuge);
       if (!material.young.empty() && !(density > material.young.back()[0])) {
         pair[0].refuse(ErrorCode::kParam, "densities do not rise");
       }
       material.young.push_back({density, pair[1].number(0.0, kHuge, true)});
     }
-    if (material.young.empty()) young.refuse(ErrorCode::kScene, "has no rows");
+    if (material.young.empty()) young.refuse("has no rows");
     if (!by_density && material.young.size() > 1) {
-      young.refuse(ErrorCode::kScene, "has several rows, which needs the effect density_response");
+      young.refuse("has several rows, which needs the effect density_response");
     }
   }
   if (reader.has("poisson")) material.poisson = reader.at("poisson").number(-1.0, 0.5, true);
@@ -41,7 +39,7 @@ Material material_from(const YamlReader& reader, bool by_density) {
 
 Vec3 place_from(const YamlReader& reader, const char* what) {
   const std::vector<YamlReader> entries = reader.entries();
-  if (entries.size() != 3) reader.refuse(ErrorCode::kScene, std::string("is not ") + what);
+  if (entries.size() != 3) reader.refuse(std::string("is not ") + what);
   Vec3 place;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     place[static_cast<Eigen::Index>(axis)] = entries[axis].number(-kHuge, kHuge);
@@ -77,13 +75,16 @@ ToolDescription tool_from(const YamlReader& entry) {
   ToolDescription tool;
   tool.name = entry.at("name").word();
   if (entry.has("shape")) {
-    entry.at("shape").require_keys({"sphere"});
-    tool.radius = entry.at("shape").at("sphere").number(0.0, 1.0, true);
+    const YamlReader shape = entry.at("shape");
+    shape.require_keys({"sphere", "patch"});
+    if (shape.members().size() != 1) shape.refuse("is not one shape");
+    if (shape.has("patch")) tool.shape = ToolShape::kPatch;
+    tool.radius = shape.members()[0].number(0.0, 1.0, true);
   }
   if (entry.has("mode")) {
     const std::string mode = entry.at("mode").word();
     if (mode != "press" && mode != "grasp") {
-      entry.at("mode").refuse(ErrorCode::kScene, "'" + mode + "' is not press or grasp");
+      entry.at("mode").refuse("'" + mode + "' is not press or grasp");
     }
     tool.grasps = mode == "grasp";
   }
@@ -96,17 +97,17 @@ std::vector<ToolDescription> tools_from(const YamlReader& reader, Model model) {
     tools.push_back(tool_from(entry));
     for (std::size_t i = 0; i + 1 < tools.size(); ++i) {
       if (tools[i].name == tools.back().name) {
-        entry.refuse(ErrorCode::kScene, "is a second tool '" + tools[i].name + "'");
+        entry.refuse("is a second tool '" + tools[i].name + "'");
       }
     }
     if (model != Model::kClosedForm && !tools.back().grasps) {
-      entry.refuse(ErrorCode::kScene, std::string("a tool that presses needs the effect contact; "
+      entry.refuse(std::string("a tool that presses needs the effect contact; "
                                                   "without it, model ") +
                                           name(model) + " moves under tools of mode grasp");
     }
   }
   if (model == Model::kClosedForm && tools.size() != 1) {
-    reader.refuse(ErrorCode::kScene,
+    reader.refuse(
                   "model closed_form moves under one tool, not " + std::to_string(tools.size()));
   }
   return tools;
@@ -134,10 +135,10 @@ DampingOptions damping_from(const YamlReader& reader) {
 void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::string>& seen) {
   const bool bare = entry.is_word();
   if (!bare && (!entry.is_map() || entry.members().size() != 1)) {
-    entry.refuse(ErrorCode::kScene, "is not an effect");
+    entry.refuse("is not an effect");
   }
   const std::string effect = bare ? entry.word() : entry.members()[0].key();
-  if (!seen.insert(effect).second) entry.refuse(ErrorCode::kScene, "names " + effect + " twice");
+  if (!seen.insert(effect).second) entry.refuse("names " + effect + " twice");
   const auto known = std::find_if(all_effects().begin(), all_effects().end(),
                                   [&](Effect one) { return effect == name(one); });
   if (known == all_effects().end() || !can_have(scene.model, *known)) {
@@ -145,7 +146,7 @@ void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::
     for (const Effect one : all_effects()) {
       if (can_have(scene.model, one)) list += std::string(" ") + name(one);
     }
-    entry.refuse(ErrorCode::kScene, "'" + effect + "' is not an effect of model " +
+    entry.refuse("'" + effect + "' is not an effect of model " +
                                         name(scene.model) + ", which knows" + list);
   }
   scene.effects.push_back(*known);
@@ -191,7 +192,7 @@ Model model_from(const YamlReader& reader) {
     if (reader.word() == name(model)) return model;
     list += std::string(list.empty() ? "" : " ") + name(model);
   }
-  reader.refuse(ErrorCode::kScene, "'" + reader.word() + "' is not a model; these are: " + list);
+  reader.refuse("'" + reader.word() + "' is not a model; these are: " + list);
 }
 
 SceneDescription scene_from(const YamlReader& file) {
@@ -207,7 +208,7 @@ SceneDescription scene_from(const YamlReader& file) {
     }
     if (order != 1.0 && scene.model == Model::kMassSpring) {
       file.at("element_order")
-          .refuse(ErrorCode::kScene, "of 2 needs tissue as a solid, not springs");
+          .refuse("of 2 needs tissue as a solid, not springs");
     }
     scene.element_order = static_cast<int>(order);
   }
@@ -225,7 +226,7 @@ SceneDescription scene_from(const YamlReader& file) {
     std::set<std::string> seen;
     for (const YamlReader& effect : file.at("effects").entries()) add_effect(effect, scene, seen);
     if (scene.has(Effect::kDamping) && !scene.has(Effect::kInertia)) {
-      file.at("effects").refuse(ErrorCode::kScene,
+      file.at("effects").refuse(
                                 "names damping without inertia: nothing swings that it could damp");
     }
   }
@@ -238,19 +239,11 @@ SceneDescription scene_from(const YamlReader& file) {
 }  // namespace
 
 SceneDescription parse_scene(const std::string& yaml) {
-  try {
-    return scene_from(YamlReader(YAML::Load(yaml), "scene"));
-  } catch (const YAML::Exception& exception) {
-    throw InputError(ErrorCode::kScene, std::string("scene: not YAML: ") + exception.what());
-  }
+  return scene_from(YamlReader(yaml, {"scene", ErrorCode::kScene}));
 }
 
 SceneDescription read_scene(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!file) throw InputError(ErrorCode::kFile, "scene: '" + path + "' cannot be read");
-  return parse_scene(text.str());
+  return parse_scene(text_of_file(path, "scene"));
 }
 
 }  // namespace tissue

@@ -39,7 +39,8 @@ TetStrain tet_strain(Constitution constitution, const Lame& lame, const Mat3& f)
   if (constitution != Constitution::kLinear) cauchy = cauchy * f.transpose() / f.determinant();
   const Mat3 deviator = cauchy - cauchy.trace() / 3.0 * Mat3::Identity();
   const Eigen::SelfAdjointEigenSolver<Mat3> stretches(f.transpose() * f, Eigen::EigenvaluesOnly);
-  return {std::sqrt(1.5) * deviator.norm(), std::sqrt(stretches.eigenvalues()[2]) - 1.0};
+  return {std::sqrt(1.5) * deviator.norm(), std::sqrt(stretches.eigenvalues()[2]) - 1.0,
+          f.determinant()};
 }
 
 // Tissue as a solid that is always at rest: each step finds the equilibrium under its weight, held
@@ -50,7 +51,7 @@ class SolidModel : public DeformationModel {
       : scene_(scene),
         body_(body),
         elements_(body, scene.element_order),
-        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
+        held_(elements_, body, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
         rest_(rest_positions(elements_)),
         positions_(rest_) {
     make_tissue(costs, threads);
@@ -110,6 +111,15 @@ class SolidModel : public DeformationModel {
   bool recovering() const override { return dynamics_ && dynamics_->moving(); }
   const State& state() const override { return state_; }
 
+  std::vector<Vec3> places(const Body&, const std::vector<TetPlace>& material) const override {
+    const Eigen::VectorXd nodes = positions_now();
+    std::vector<Vec3> result;
+    for (const TetPlace& place : material) {
+      result.push_back(elements_.value_at(place.tet, place.barycentric, nodes));
+    }
+    return result;
+  }
+
   std::vector<std::optional<Vec3>> tool_forces() const override {
     const std::vector<Vec3> all = forces_on_holders();
     return {all.begin() + static_cast<std::ptrdiff_t>(scene_.anchors.size()), all.end()};
@@ -131,6 +141,7 @@ class SolidModel : public DeformationModel {
                                           elastic_->deformation_gradient(t, point, positions));
         result[t].von_mises += point.weight * here.von_mises;
         result[t].largest_strain += point.weight * here.largest_strain;
+        result[t].det_f += point.weight * here.det_f;
       }
     }
     return result;

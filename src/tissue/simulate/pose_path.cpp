@@ -1,4 +1,4 @@
-#include "pose_path.h"
+#include "tissue/simulate/pose_path.h"
 
 #include "tissue/base/error.h"
 
@@ -8,11 +8,8 @@
 #include <set>
 #include <sstream>
 
-namespace tissue_tools {
+namespace tissue {
 namespace {
-
-using tissue::ErrorCode;
-using tissue::InputError;
 
 class Line {
  public:
@@ -59,13 +56,13 @@ std::vector<StampedPose> read_poses(const std::string& path) {
     const Eigen::Quaterniond turn(v[7], v[4], v[5], v[6]);
     if (!(turn.norm() > 0.9 && turn.norm() < 1.1)) {
       line.refuse(ErrorCode::kParam,
-                  "a quaternion of norm " + tissue::to_text(turn.norm()) + " is no rotation");
+                  "a quaternion of norm " + to_text(turn.norm()) + " is no rotation");
     }
     if (!poses.empty() && v[0] < poses.back().time) {
-      line.refuse(ErrorCode::kDt, "time " + tissue::to_text(v[0]) + " lies before " +
-                                      tissue::to_text(poses.back().time));
+      line.refuse(ErrorCode::kDt, "time " + to_text(v[0]) + " lies before " +
+                                      to_text(poses.back().time));
     }
-    tissue::ToolPose pose;
+    ToolPose pose;
     pose.position = {v[1], v[2], v[3]};
     pose.orientation = turn.normalized();
     if (v.size() == 9) pose.closed = v[8] > 0.5;
@@ -83,7 +80,7 @@ std::vector<Instant> merged(const std::vector<std::vector<StampedPose>>& paths) 
   std::vector<std::size_t> next(paths.size(), 0);
   std::vector<Instant> instants;
   for (const double time : times) {
-    Instant instant = {time, tissue::ToolPoses(paths.size())};
+    Instant instant = {time, ToolPoses(paths.size())};
     for (std::size_t i = 0; i < paths.size(); ++i) {
       while (next[i] < paths[i].size() && paths[i][next[i]].time <= time) ++next[i];
       const bool is_over = !paths[i].empty() && paths[i].back().time < time;
@@ -94,4 +91,17 @@ std::vector<Instant> merged(const std::vector<std::vector<StampedPose>>& paths) 
   return instants;
 }
 
-}  // namespace tissue_tools
+std::vector<Instant> instants_of(const SceneDescription& scene,
+                                 const std::vector<std::vector<StampedPose>>& paths) {
+  std::vector<Instant> instants = merged(paths);
+  if (!instants.empty()) return instants;
+  const auto steps = scene.has(Effect::kInertia)
+                         ? static_cast<std::size_t>(std::ceil(scene.duration / scene.dt - 1e-9))
+                         : 0;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    instants.push_back({static_cast<double>(i) * scene.dt, ToolPoses(scene.tools.size())});
+  }
+  return instants;
+}
+
+}  // namespace tissue

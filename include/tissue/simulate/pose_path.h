@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-namespace tissue_tools {
+namespace tissue {
 
 /// A tool's pose at a time [s].
 struct StampedPose {
   double time = 0.0;
-  tissue::ToolPose pose;
+  ToolPose pose;
 };
 
 /// Reads lines `t,x,y,z,qx,qy,qz,qw` with an optional ninth number, the grip (1: closed); a head
-/// line and empty lines are passed over. Throws tissue::InputError E_FILE or E_PARAM that names
+/// line and empty lines are passed over. Throws InputError E_FILE or E_PARAM that names
 /// file, line and value: numbers must be finite, the quaternion's norm within 0.9 to 1.1, times
 /// must not fall.
 std::vector<StampedPose> read_poses(const std::string& path);
@@ -22,11 +22,16 @@ std::vector<StampedPose> read_poses(const std::string& path);
 /// What all tools do at one instant.
 struct Instant {
   double time = 0.0;
-  tissue::ToolPoses tools;
+  ToolPoses tools;
 };
 
 /// The instants at which any tool has a pose, in order; a tool keeps its last pose, and is absent
 /// before its first and after its last.
 std::vector<Instant> merged(const std::vector<std::vector<StampedPose>>& paths);
 
-}  // namespace tissue_tools
+/// The instants of a run: those of the paths, one for each tool of the scene; without any pose one
+/// equilibrium or, with inertia, as long as the scene says.
+std::vector<Instant> instants_of(const SceneDescription& scene,
+                                 const std::vector<std::vector<StampedPose>>& paths);
+
+}  // namespace tissue
