@@ -16,7 +16,7 @@ add_library(tissue_ros
   src/ros/volume_node.cpp)
 target_include_directories(tissue_ros PUBLIC src SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(tissue_ros PUBLIC
-  tissue_refine tissue_simulate tissue_triangle_surface tissue_mesh_file tissue_point_file
+  tissue_study tissue_triangle_surface tissue_mesh_file tissue_point_file
   ${catkin_LIBRARIES})
 add_dependencies(tissue_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
@@ -26,11 +26,11 @@ foreach(node volume_node mesher_node deformer_node)
 endforeach()
 
 install(TARGETS
-    mesh_volume run_scene volume_node mesher_node deformer_node
+    accuracy_study mesh_volume run_scene volume_node mesher_node deformer_node
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS
     tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_refine tissue_ros
-    tissue_point_file tissue_simulate tissue_triangle_surface tissue_yaml
+    tissue_point_file tissue_simulate tissue_study tissue_triangle_surface tissue_yaml
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
 install(DIRECTORY include/tissue DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})

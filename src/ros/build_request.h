@@ -2,6 +2,9 @@
 
 #include "ros/parameters.h"
 #include "tissue/base/error.h"
+#include "tissue/field/triangle_surface.h"
+#include "tissue/simulate/scene_file.h"
+#include "tissue/study/strain_mesh.h"
 
 #include <soft_tissue_sim/BuildMesh.h>
 
@@ -11,11 +14,10 @@ namespace tissue_ros {
 // the core's options. Each throws tissue::InputError that names the field and the value.
 
 inline tissue::Method method_from(const std::string& name) {
-  if (name.empty() || name == "density") return tissue::Method::kDensity;
-  if (name == "uniform") return tissue::Method::kUniform;
-  if (name == "surface") return tissue::Method::kSurface;
+  const std::optional<tissue::Method> method = tissue::method_named(name.empty() ? "density" : name);
+  if (method) return *method;
   throw tissue::InputError(tissue::ErrorCode::kParam, "method: '" + name.substr(0, 40) +
-                                                          "' is not density, uniform or surface");
+                                                          "' is not " + tissue::method_names());
 }
 
 template <class Request>
@@ -30,6 +32,33 @@ std::map<std::int64_t, double> label_densities_from(const Request& request) {
     densities[request.labels[i]] = request.label_densities[i];
   }
   return densities;
+}
+
+/// Calls `file` for the path of what a request names below the mesher's folder.
+using FileNamed = std::function<std::string(const std::string&)>;
+
+template <class Request>
+tissue::ImplicitSurface surface_for(const Request& request,
+                                    const std::shared_ptr<const tissue::Volume>& volume,
+                                    const std::shared_ptr<const tissue::Volume>& mask,
+                                    const FileNamed& file) {
+  if (!request.surface_file.empty()) {
+    return tissue::surface_of_triangles(tissue::read_surface(file(request.surface_file)),
+                                        volume->grid);
+  }
+  if (mask != nullptr) return tissue::surface_of_mask(mask);
+  return tissue::surface_at_iso(volume, request.iso_value);
+}
+
+/// What strains the tissue, for the method of that name.
+template <class Request>
+tissue::SceneMotion motion_from(const Request& request, const FileNamed& file) {
+  if (request.scene_file.empty()) {
+    throw tissue::InputError(tissue::ErrorCode::kParam,
+                             "scene_file: is empty; the method strain needs a scene");
+  }
+  const tissue::SceneDescription scene = tissue::read_scene(file(request.scene_file));
+  return {scene, instants_of(scene, read_paths(scene, request.path_files, file))};
 }
 
 template <class Request>

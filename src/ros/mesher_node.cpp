@@ -198,15 +198,20 @@ tissue::TetMesh MesherNode::mesh_for(const Asked& request, const tissue::Run& ru
     throw InputError(ErrorCode::kNoVolume, "use_mask: no mask has arrived yet");
   }
   const tissue::MeshOptions options = options_from(request, parameters_);
-  if (request.surface_file.empty()) return tissue::build_mesh(volume, mask, options, run).mesh;
-  if (request.use_mask) {
+  if (request.use_mask && !request.surface_file.empty()) {
     throw InputError(ErrorCode::kParam, "surface_file: use_mask is set too; one is the organ");
   }
-  const std::string path = tissue::confined_path(folder(), request.surface_file, true);
-  return tissue::build_mesh(volume,
-                            tissue::surface_of_triangles(tissue::read_surface(path), volume->grid),
-                            options, run)
-      .mesh;
+  const std::string below = folder();
+  const auto file = [&](const std::string& name) {
+    return tissue::confined_path(below, name, true);
+  };
+  if (options.method == tissue::Method::kWished) {
+    return build_strain_mesh(volume, surface_for(request, volume, mask, file), options,
+                             motion_from(request, file), run)
+        .mesh;
+  }
+  if (request.surface_file.empty()) return tissue::build_mesh(volume, mask, options, run).mesh;
+  return tissue::build_mesh(volume, surface_for(request, volume, mask, file), options, run).mesh;
 }
 
 bool MesherNode::save(FileRequest& request, FileResponse& response) {

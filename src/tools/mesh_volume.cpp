@@ -7,6 +7,8 @@
 #include "tissue/base/stage_clock.h"
 #include "tissue/field/read_volume.h"
 #include "tissue/field/triangle_surface.h"
+#include "tissue/simulate/scene_file.h"
+#include "tissue/study/strain_mesh.h"
 
 #include <cstdio>
 
@@ -21,6 +23,15 @@ tissue::ImplicitSurface organ_in(const tissue_tools::MeshVolumeArguments& argume
   auto mask = std::make_shared<tissue::Volume>(tissue::read_volume(arguments.mask));
   mask->quantity = tissue::Quantity::kLabel;
   return tissue::surface_of_mask(mask);
+}
+
+tissue::BuiltMesh build(const tissue_tools::MeshVolumeArguments& arguments,
+                        const std::shared_ptr<const tissue::Volume>& volume,
+                        const tissue::ImplicitSurface& organ, const tissue::Run& run) {
+  if (arguments.scene.empty()) return tissue::build_mesh(volume, organ, arguments.mesh, run);
+  const tissue::SceneDescription scene = tissue::read_scene(arguments.scene);
+  const auto instants = tissue::instants_of(scene, tissue::read_paths(scene, arguments.paths));
+  return tissue::build_strain_mesh(volume, organ, arguments.mesh, {scene, instants}, run);
 }
 
 // What a person wants to know at once; `--stats` has it all.
@@ -74,7 +85,7 @@ void run(const tissue_tools::MeshVolumeArguments& arguments) {
         progress.fraction,
         std::string(progress.stage) + ", " + std::to_string(progress.tetrahedra) + " tets");
   };
-  tissue::BuiltMesh built = tissue::build_mesh(volume, organ, arguments.mesh, watched);
+  tissue::BuiltMesh built = build(arguments, volume, organ, watched);
   files.start("write");
   std::vector<tissue::TetField> further;
   if (arguments.mesh.lattice_only) {

@@ -118,7 +118,11 @@ po::options_description mesh_volume_options() {
   add("tumour", po::value<std::vector<std::string>>(),
       "X,Y,Z,R,VALUE: put in a ball of this value [m, world]");
   add("labels", word(), "LABEL:DENSITY,…: the volume holds labels with these densities");
-  add("method", word()->default_value("density"), "density, uniform or surface");
+  add("method", word()->default_value("density"),
+      "density, uniform, surface, or strain: fine where a scene strains the tissue");
+  add("scene", word(), "for strain: scene file");
+  add("path", po::value<std::vector<std::string>>()->composing(),
+      "for strain: poses of a tool as [TOOL=]POSES.csv, as for run_scene");
   add("spacing", word(), "long edge of the lattice [m]");
   add("tetrahedra", word(), "tets of the whole mesh, met within 2 %");
   add("initial", number(defaults.initial_tetrahedra),
@@ -172,9 +176,19 @@ MeshVolumeArguments mesh_volume_arguments(const po::variables_map& given) {
   }
   result.decimate = numbers("decimate", text("decimate"), 1)[0];
   tissue::MeshOptions& mesh = result.mesh;
-  constexpr tissue::Method kMethods[] = {tissue::Method::kDensity, tissue::Method::kUniform,
-                                         tissue::Method::kSurface};
-  mesh.method = kMethods[chosen(given, "method", {"density", "uniform", "surface"})];
+  const std::optional<tissue::Method> method = tissue::method_named(text("method"));
+  if (!method) {
+    throw InputError(ErrorCode::kParam, "--method: '" + text("method") + "' is not " +
+                                            tissue::method_names());
+  }
+  mesh.method = *method;
+  result.scene = text("scene");
+  if (given.count("path") != 0) result.paths = given["path"].as<std::vector<std::string>>();
+  if ((mesh.method == tissue::Method::kWished) == result.scene.empty()) {
+    throw InputError(ErrorCode::kParam, mesh.method == tissue::Method::kWished
+                                            ? "--scene: is missing; strain comes from a scene"
+                                            : "--scene: is only for the method strain");
+  }
   mesh.iso_value = numbers("iso", text("iso"), 1)[0];
   if (given.count("spacing") != 0) {
     mesh.spacing = numbers("spacing", text("spacing"), 1)[0];

@@ -2,13 +2,12 @@
 #include "program.h"
 #include "tissue/base/error.h"
 #include "tissue/base/mesh_file.h"
-#include "tissue/simulate/pose_path.h"
 #include "tissue/simulate/scene_file.h"
+#include "tissue/simulate/scene_run.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -59,46 +58,9 @@ Arguments arguments_from(const po::variables_map& given) {
   return arguments;
 }
 
-// One path for each tool of the scene; empty for a tool without one.
-std::vector<std::vector<tissue::StampedPose>> paths_for(
-    const tissue::SceneDescription& scene, const std::vector<std::string>& options) {
-  std::vector<std::vector<tissue::StampedPose>> paths(scene.tools.size());
-  for (const std::string& option : options) {
-    const std::size_t equals = option.find('=');
-    const std::string tool = equals == std::string::npos ? "" : option.substr(0, equals);
-    std::size_t which = 0;
-    while (!tool.empty() && which < scene.tools.size() && scene.tools[which].name != tool) ++which;
-    if (which >= scene.tools.size()) {
-      throw InputError(ErrorCode::kParam, "--path: the scene has no tool '" + tool + "'");
-    }
-    if (!paths[which].empty()) {
-      throw InputError(ErrorCode::kParam,
-                       "--path: tool " + scene.tools[which].name + " has two paths");
-    }
-    paths[which] =
-        tissue::read_poses(equals == std::string::npos ? option : option.substr(equals + 1));
-  }
-  return paths;
-}
-
 nlohmann::json triple(const tissue::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-// What the steps of a run cost and how they went.
-struct Record {
-  std::vector<double> seconds;
-  std::size_t failed = 0;
-  tissue::StepReport last;
-  bool clamped = false;
-
-  double percentile(double part) const {
-    std::vector<double> sorted = seconds;
-    std::sort(sorted.begin(), sorted.end());
-    const auto last_one = static_cast<double>(sorted.size() - 1);
-    return sorted[static_cast<std::size_t>(std::ceil(part * last_one))];
-  }
-};
-
-nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
+nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& record) {
   const tissue::DeformationQuality quality =
       tissue::deformation_quality(scene.body(), scene.state());
   nlohmann::json effects = nlohmann::json::array(), probes = nlohmann::json::object(),
@@ -117,7 +79,7 @@ nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
   for (std::size_t i = 0; i < anchors.size(); ++i) {
     reactions["anchors[" + std::to_string(i) + "]"] = triple(anchors[i]);
   }
-  if (record.failed > 0) flags.push_back("NOT_CONVERGED");
+  if (record.not_converged > 0) flags.push_back("NOT_CONVERGED");
   if (record.clamped) flags.push_back("CLAMPED");
   return {{"scene", scene.description().name},
           {"model", name(scene.description().model)},
@@ -125,11 +87,11 @@ nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
           {"tetrahedra", scene.body().tets.size()},
           {"vertices", scene.body().rest.size()},
           {"steps", record.seconds.size()},
-          {"steps_not_converged", record.failed},
+          {"steps_not_converged", record.not_converged},
           {"step_seconds",
-           {{"median", record.percentile(0.5)},
-            {"p99", record.percentile(0.99)},
-            {"max", record.percentile(1.0)}}},
+           {{"median", tissue::percentile(record.seconds, 0.5)},
+            {"p99", tissue::percentile(record.seconds, 0.99)},
+            {"max", tissue::percentile(record.seconds, 1.0)}}},
           {"effects", effects},
           {"iterations", record.last.iterations},
           {"residual", record.last.residual},
@@ -140,22 +102,6 @@ nlohmann::json figures(const tissue::Scene& scene, const Record& record) {
           {"probes", probes},
           {"reaction_n", reactions},
           {"flags", flags}};
-}
-
-Record run_instants(tissue::Scene& scene, const std::vector<tissue::Instant>& instants) {
-  Record record;
-  for (std::size_t i = 0; i < instants.size(); ++i) {
-    const double dt = i == 0 ? 0.0 : instants[i].time - instants[i - 1].time;
-    const auto start = std::chrono::steady_clock::now();
-    record.last = scene.step(instants[i].tools, dt);
-    record.seconds.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    record.failed += record.last.not_converged;
-    record.clamped = record.clamped || record.last.clamped;
-    tissue_tools::show_progress(static_cast<double>(i + 1) / static_cast<double>(instants.size()),
-                                "step " + std::to_string(i + 1));
-  }
-  return record;
 }
 
 void write_result(const tissue::TetMesh& mesh, const tissue::Scene& scene,
@@ -179,11 +125,14 @@ void write_result(const tissue::TetMesh& mesh, const tissue::Scene& scene,
 void run(const Arguments& arguments) {
   const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
   const std::vector<tissue::Instant> instants =
-      instants_of(description, paths_for(description, arguments.paths));
+      instants_of(description, read_paths(description, arguments.paths));
   const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
   tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
                       arguments.threads);
-  const Record record = run_instants(scene, instants);
+  const tissue::RunRecord record = run_along(scene, instants, [&](std::size_t done) {
+    tissue_tools::show_progress(static_cast<double>(done) / static_cast<double>(instants.size()),
+                                "step " + std::to_string(done));
+  });
   write_result(mesh, scene, arguments.output);
   const nlohmann::json stats = figures(scene, record);
   if (!arguments.stats.empty()) {
@@ -196,14 +145,14 @@ void run(const Arguments& arguments) {
   }
   std::printf("%s, %s of order %d, %zu tets: %zu steps, %.4g s each (median)\n",
               description.name.c_str(), name(description.model), description.element_order,
-              mesh.tets.size(), record.seconds.size(), record.percentile(0.5));
+              mesh.tets.size(), record.seconds.size(), tissue::percentile(record.seconds, 0.5));
   std::printf("largest displacement %.3g m, smallest det F %.3g, %zu tets inverted\n", farthest,
               stats["min_det_f"].get<double>(), stats["inverted"].get<std::size_t>());
-  if (record.failed > 0) {
+  if (record.not_converged > 0) {
     std::printf(
         "NOT_CONVERGED in %zu steps, residual of the last %.3g: the state is the last "
         "that was an equilibrium\n",
-        record.failed, record.last.residual);
+        record.not_converged, record.last.residual);
   }
 }
 

@@ -1,7 +1,7 @@
 // What a step costs, by model, order of the elements, effects and size. scripts/benchmark runs it
 // and keeps the results.
 #include "grasped_beam.h"
-#include "peak_memory.h"
+#include "tissue/base/peak_memory.h"
 #include "tissue/simulate/scene_file.h"
 
 #include <benchmark/benchmark.h>
@@ -9,7 +9,7 @@
 namespace {
 
 using tissue::Model;
-using tissue_test::PeakMemory;
+using tissue::PeakMemory;
 
 // Measures steps and counts what they did, the same counters for all.
 template <class Step>

@@ -7,6 +7,7 @@
 #include "tissue/refine/levels.h"
 #include "tissue/refine/project_boundary.h"
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,7 +22,18 @@ enum class Method {
   kUniform,
   /// Fine at the boundary, coarse inside, blind to density (Park and Choi).
   kSurface,
+  /// As fine as somebody else says, who has looked at where each tet of the lattice lies.
+  kWished,
 };
+
+/// By the names that people use: density, uniform, surface, and strain for `kWished`.
+std::optional<Method> method_named(const std::string& name);
+/// All of them, in a sentence.
+const char* method_names();
+
+/// The level that each tet of the lattice is to have, where its vertices lie in the world [m].
+using LevelWishes =
+    std::function<std::vector<std::uint8_t>(const std::vector<Vec3>&, const std::vector<Tet>&)>;
 
 /// What to make of a volume. The only place where the mesher's defaults stand.
 struct MeshOptions {
@@ -37,6 +49,8 @@ struct MeshOptions {
   /// Tets of the uniform stage (nTinit), met within 2 %. Used where the two above are 0.
   std::uint32_t initial_tetrahedra = 40000;
   LevelOptions levels;
+  /// For `kWished`.
+  LevelWishes wishes;
   /// Tets that straddle a jump of density take the level of their softest corner.
   bool keep_interfaces = false;
   /// Move boundary vertices onto the isosurface.
@@ -80,5 +94,11 @@ BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume, const Implicit
 BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,
                      const std::shared_ptr<const Volume>& mask, const MeshOptions& options,
                      const Run& run = {});
+
+/// How many tets build_mesh() would make, found without making them; the densities decide what they
+/// decide there. Throws as build_mesh().
+std::uint64_t planned_tetrahedra(const std::shared_ptr<const Volume>& volume,
+                                 const ImplicitSurface& surface, const MeshOptions& options,
+                                 const Run& run = {});
 
 }  // namespace tissue

@@ -29,16 +29,19 @@ bool can_have(Model model, Effect effect);
 std::string effects_table();
 
 /// What a tool takes hold of: all tissue within its sphere, which then moves as if it were part of
-/// the tool, or a patch of the surface, which follows the tool in its middle and less and less
-/// towards its rim, where it stays. What a patch does to a body hardly depends on the mesh.
-enum class ToolShape { kSphere, kPatch };
+/// the tool, or the surface within that distance, through a soft pad. What a pad does to a body
+/// hardly depends on its mesh; what a sphere does depends on which vertices lie in it.
+enum class ToolShape { kSphere, kPad };
 
 /// A tool as a scene names it.
 struct ToolDescription {
   std::string name = "tool";
   ToolShape shape = ToolShape::kSphere;
-  /// Of the sphere or the patch [m].
+  /// Of the sphere or the pad [m].
   double radius = 0.004;
+  /// Pressure of a pad, in its middle, for each metre by which it is squeezed or stretched [Pa/m].
+  /// More, and the surface follows the tool more closely.
+  double pad_stiffness = 1e6;
   /// `press` takes hold of the tissue at the first touch; `grasp` when the jaw closes on it.
   bool grasps = false;
 };

@@ -42,6 +42,8 @@ class YamlReader {
   std::vector<YamlReader> members() const;
 
   std::string word() const;
+  /// All that it holds, as YAML.
+  std::string text() const { return YAML::Dump(node_); }
   /// A number within [lowest, highest], ends excluded where `open`.
   double number(double lowest, double highest, bool open = false) const;
   /// A whole number within [lowest, highest].

@@ -2,7 +2,7 @@
 
 #include "check_options.h"
 #include "filler.h"
-#include "lattice_search.h"
+#include "lattice_choice.h"
 #include "mesh_design.h"
 #include "mesh_measures.h"
 #include "tissue/base/error.h"
@@ -26,58 +26,6 @@ DensityWindow window_for(const Volume& volume, const ImplicitSurface& surface,
   const double d_max = options.levels.d_max;
   if (options.window) return {(*options.window)[0], (*options.window)[1], d_max};
   return default_window(volume, surface, d_max);
-}
-
-// Spacing and offset at which the mesh, or else the lattice, has as many tets as asked for.
-StuffingOptions lattice_for(const Organ& organ, const MeshOptions& options,
-                            TemplateLibrary& library, StageClock& clock, const Run& run) {
-  StuffingOptions stuffing;
-  stuffing.component = options.component;
-  stuffing.component.place = organ.volume.grid.to_grid(options.component.place);
-  // An organ fills at least a twelfth of its lattice, or is cropped first.
-  stuffing.max_points = 2.0 * static_cast<double>(options.max_tetrahedra);
-  stuffing.spacing = options.spacing;
-  if (options.spacing > 0.0) {
-    // Voxels are counted only where the whole box would be too much.
-    const Grid& grid = organ.volume.grid;
-    const double box = static_cast<double>(grid.voxel_count()) * grid.spacing.prod();
-    const double tets_per_volume = 12.0 / std::pow(options.spacing, 3);
-    if (box * tets_per_volume > 1e6) {
-      check_total(options, voxel_volume_inside(organ.surface) * tets_per_volume,
-                  "spacing: " + to_text(options.spacing) + " m");
-    }
-    return stuffing;
-  }
-  const bool by_total = options.target_tetrahedra > 0;
-  const bool by_design = by_total && options.method != Method::kUniform;
-  const double wished = by_total ? static_cast<double>(options.target_tetrahedra)
-                                 : static_cast<double>(options.initial_tetrahedra);
-  check_total(options, wished, by_total ? "target_tetrahedra" : "initial_tetrahedra");
-  // Sections of equal size have 1, 8, 64, … tets for each of the lattice's.
-  double growth = 1.0;
-  if (by_design) {
-    growth = 0.0;
-    for (int level = 0; level < options.levels.sections; ++level) {
-      growth += std::pow(8.0, std::min(level + options.levels.base_level, 8));
-    }
-    growth /= options.levels.sections;
-  }
-  // A lattice tet has a volume of spacing³/12.
-  stuffing.spacing = std::cbrt(12.0 * voxel_volume_inside(organ.surface) * growth / wished);
-  // What a total costs to find is told apart from what the mesh costs.
-  const char* stage = by_total ? "search" : "lattice";
-  clock.start(stage);
-  return search_lattice(stuffing, wished, by_total ? 0.002 : 0.02, [&](const StuffingOptions& at) {
-    run.enter({stage, 0.0, 0});
-    if (!by_design) return static_cast<double>(count_stuffed(organ.surface, at, run));
-    StageClock unused;
-    Run quiet = run;
-    quiet.report = nullptr;
-    // A guess may lie beyond a limit that the mesh to be found keeps; nothing is allocated for it.
-    MeshOptions roomy = options;
-    roomy.max_tetrahedra *= 2;
-    return static_cast<double>(design_mesh(organ, at, roomy, library, unused, quiet).tetrahedra);
-  });
 }
 
 TetMesh as_uniform(LatticeMesh& lattice, std::vector<std::uint8_t> levels) {
@@ -260,10 +208,10 @@ class Builder {
   double spacing_ = 0.0;
 };
 
-}  // namespace
-
-BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume, const ImplicitSurface& surface,
-                     const MeshOptions& options, const Run& run) {
+// Calls body(organ, run) with what a mesh is made from. Throws as build_mesh().
+template <class Body>
+auto with_organ(const std::shared_ptr<const Volume>& volume, const ImplicitSurface& surface,
+                const MeshOptions& options, const Run& run, const Body& body) {
   check_options(options);
   const Grid& grid = surface.field->grid;
   if (!same_grid(volume->grid, grid)) {
@@ -278,8 +226,27 @@ BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume, const Implicit
   if (!options.label_densities.empty()) {
     densities = std::make_shared<Volume>(relabelled(*volume, options.label_densities));
   }
-  const Organ organ = {*densities, surface, window_for(*densities, surface, options)};
-  return Builder(organ, options, here).build();
+  return body(Organ{*densities, surface, window_for(*densities, surface, options)}, here);
+}
+
+}  // namespace
+
+BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume, const ImplicitSurface& surface,
+                     const MeshOptions& options, const Run& run) {
+  return with_organ(volume, surface, options, run, [&](const Organ& organ, const Run& here) {
+    return Builder(organ, options, here).build();
+  });
+}
+
+std::uint64_t planned_tetrahedra(const std::shared_ptr<const Volume>& volume,
+                                 const ImplicitSurface& surface, const MeshOptions& options,
+                                 const Run& run) {
+  return with_organ(volume, surface, options, run, [&](const Organ& organ, const Run& here) {
+    StageClock clock;
+    TemplateLibrary library;
+    const StuffingOptions stuffing = lattice_for(organ, options, library, clock, here);
+    return design_mesh(organ, stuffing, options, library, clock, here).tetrahedra;
+  });
 }
 
 BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume,

@@ -21,6 +21,16 @@ constexpr std::uint32_t kFewestTets = 24;
 
 }  // namespace
 
+std::optional<Method> method_named(const std::string& name) {
+  if (name == "density") return Method::kDensity;
+  if (name == "uniform") return Method::kUniform;
+  if (name == "surface") return Method::kSurface;
+  if (name == "strain") return Method::kWished;
+  return std::nullopt;
+}
+
+const char* method_names() { return "density, uniform, surface or strain"; }
+
 void check_options(const MeshOptions& options) {
   const LevelOptions& levels = options.levels;
   if (levels.sections < 1 || levels.sections > 255) {
@@ -73,6 +83,9 @@ void check_options(const MeshOptions& options) {
     refuse(ErrorCode::kParam, "projection: " + std::to_string(options.projection.sweeps) + " and " +
                                   std::to_string(options.projection.sweeps_after_following) +
                                   " sweeps are not within 1 to 100 and 0 to 100");
+  }
+  if (options.method == Method::kWished && !options.wishes) {
+    refuse(ErrorCode::kParam, "method: strain needs a scene");
   }
   if (!options.component.place.allFinite()) {
     refuse(ErrorCode::kParam, "component: its place is not finite");

@@ -21,11 +21,17 @@ std::vector<std::uint8_t> boundary_flags(const LatticeMesh& mesh) {
   return flags;
 }
 
-std::vector<std::uint8_t> wished(const LatticeMesh& mesh, const MeshOptions& options,
-                                 MeshDesign& design) {
+std::vector<std::uint8_t> wished(const LatticeMesh& mesh, const Grid& grid,
+                                 const MeshOptions& options, MeshDesign& design) {
   switch (options.method) {
     case Method::kUniform: return std::vector<std::uint8_t>(mesh.tets.size(), 0);
     case Method::kSurface: return surface_levels(mesh.tets, boundary_flags(mesh), options.levels);
+    case Method::kWished: {
+      std::vector<Vec3> places;
+      places.reserve(mesh.vertices.size());
+      for (const Vec3& vertex : mesh.vertices) places.push_back(grid.to_world(vertex));
+      return options.wishes(places, mesh.tets);
+    }
     case Method::kDensity: break;
   }
   design.thresholds = density_thresholds(design.tet_means, options.levels);
@@ -59,7 +65,7 @@ MeshDesign design_mesh(const Organ& organ, const StuffingOptions& stuffing,
     design.tet_means = smoothed(tet_means(mesh.tets, design.densities), mesh.tets,
                                 mesh.vertices.size(), options.levels.smooth_levels);
   }
-  design.wishes = wished(mesh, options, design);
+  design.wishes = wished(mesh, organ.volume.grid, options, design);
   const std::uint64_t predicted = predicted_tets(design.wishes);
   check_total(options, static_cast<double>(predicted),
               "level_sections: " + std::to_string(options.levels.sections) + " on " +

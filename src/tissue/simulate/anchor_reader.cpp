@@ -26,7 +26,7 @@ CoordinateTriple triple_from(const YamlReader& reader) {
 }
 
 PlaneAnchor plane_from(const YamlReader& reader) {
-  reader.require_keys({"axis", "below", "above"});
+  reader.require_keys({"axis", "below", "above", "stiffness"});
   PlaneAnchor plane;
   const std::string axis = reader.at("axis").word();
   if (axis != "x" && axis != "y" && axis != "z") {
@@ -38,6 +38,7 @@ PlaneAnchor plane_from(const YamlReader& reader) {
   }
   if (reader.has("below")) plane.below = coordinate_from(reader.at("below"));
   if (reader.has("above")) plane.above = coordinate_from(reader.at("above"));
+  if (reader.has("stiffness")) plane.stiffness = reader.at("stiffness").number(0.0, 1e12, true);
   return plane;
 }
 

@@ -2,8 +2,10 @@
 
 #include "tissue/base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 namespace tissue {
@@ -27,6 +29,13 @@ struct Bounds {
   }
 };
 
+Bed bed_at(const PlaneAnchor& anchor, const Bounds& bounds) {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  const double low = bounds.low[anchor.axis], high = bounds.high[anchor.axis];
+  return {0, anchor.axis, anchor.above ? anchor.above->within(low, high) : -kFar,
+          anchor.below ? anchor.below->within(low, high) : kFar, anchor.stiffness};
+}
+
 // Gives vertices to anchors; who comes first keeps them.
 class Holds {
  public:
@@ -43,12 +52,12 @@ class Holds {
   const std::vector<int>& holders() const { return holders_; }
 
   std::size_t operator()(const PlaneAnchor& anchor) {
-    const double low = bounds_.low[anchor.axis], high = bounds_.high[anchor.axis];
-    return hold_where([&](std::size_t v) {
-      const double place = body_.rest[v][anchor.axis];
-      return (anchor.below && place < anchor.below->within(low, high)) ||
-             (anchor.above && place > anchor.above->within(low, high));
-    });
+    const Bed side = bed_at(anchor, bounds_);
+    const auto within = [&](std::size_t v) { return side.reaches(body_.rest[v].cast<double>()); };
+    if (anchor.stiffness == 0.0) return hold_where(within);
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < holders_.size(); ++v) count += within(v);
+    return count;
   }
   std::size_t operator()(const BoxAnchor& anchor) {
     const Vec3 low = bounds_.at(anchor.low), high = bounds_.at(anchor.high);
@@ -145,7 +154,19 @@ std::vector<int> anchors_of_vertices(const Body& body, const std::vector<Anchor>
   return holds.holders();
 }
 
-void require_held(const Body& body, const std::vector<int>& holders) {
+std::vector<Bed> beds_of(const Body& body, const std::vector<Anchor>& anchors) {
+  std::vector<Bed> beds;
+  for (std::size_t i = 0; i < anchors.size(); ++i) {
+    const auto* const plane = std::get_if<PlaneAnchor>(&anchors[i]);
+    if (plane == nullptr || plane->stiffness == 0.0) continue;
+    beds.push_back(bed_at(*plane, Bounds(body)));
+    beds.back().anchor = i;
+  }
+  return beds;
+}
+
+void require_held(const Body& body, const std::vector<int>& holders,
+                  const std::vector<Bed>& beds) {
   const std::vector<std::uint32_t> parts = parts_of(body);
   const Bounds bounds(body);
   const double size = (bounds.high - bounds.low).norm();
@@ -154,6 +175,14 @@ void require_held(const Body& body, const std::vector<int>& holders) {
   for (std::size_t v = 0; v < parts.size(); ++v) {
     ++vertices[parts[v]];
     if (holders[v] != kNobody) spans[parts[v]].add(body.rest[v].cast<double>(), size);
+  }
+  for (const Triangle& triangle : body.surface) {
+    for (const std::uint32_t v : triangle) {
+      const Vec3 place = body.rest[v].cast<double>();
+      const bool lies_on_bed = std::any_of(beds.begin(), beds.end(),
+                                           [&](const Bed& bed) { return bed.reaches(place); });
+      if (lies_on_bed) spans[parts[v]].add(place, size);
+    }
   }
   std::string list;
   std::size_t loose = 0;

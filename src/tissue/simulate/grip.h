@@ -1,46 +1,33 @@
 #pragma once
 
-#include "tissue/simulate/scene.h"
+#include "jaw.h"
 
 namespace tissue {
 
-/// A node that a tool holds.
-struct Hold {
-  std::uint32_t node = 0;
-  /// From the tool's centre, in the tool's frame, when it took hold [m].
-  Vec3 offset = Vec3::Zero();
-  /// Where the node was then [m].
-  Vec3 start = Vec3::Zero();
-  /// How far the node goes of the way on which the tool would carry it: 1, or less towards the rim
-  /// of a patch.
-  double share = 1.0;
-
-  /// Where a tool at `pose`, turned by `turn`, takes the node.
-  Vec3 place(const ToolPose& pose, const Mat3& turn) const {
-    const Vec3 carried = pose.position + turn * offset;
-    return share == 1.0 ? carried : Vec3(start + share * (carried - start));
-  }
-};
-
-/// What a tool holds: what was within its shape when its jaw closed (or when a tool without a jaw
-/// first touched any), as if it were part of the tool.
+/// What a tool holds: the vertices that were within its sphere when its jaw closed (or when a tool
+/// without a jaw first touched any), as if they were part of it.
 class Grip {
  public:
-  /// Takes hold of vertices, keeps them or lets go. True if that changed what is held. Vertices that
-  /// have a holder already stay with it; a patch takes only vertices that are `on_surface`.
+  /// Takes hold, keeps it or lets go. True if that changed what is held. Vertices
+  /// that have a holder already stay with it.
   bool update(const std::optional<ToolPose>& pose, const ToolDescription& tool,
-              const std::vector<Vec3>& vertices_now, const std::vector<int>& holders,
-              const std::vector<std::uint8_t>& on_surface);
-  /// Takes one more node, of which it may hold none yet.
-  void take(std::uint32_t node, const Vec3& place, const ToolPose& pose,
-            const ToolDescription& tool);
+              const std::vector<Vec3>& vertices_now, const std::vector<int>& holders);
 
-  const std::vector<Hold>& holds() const { return holds_; }
-  bool empty() const { return holds_.empty(); }
+  const std::vector<std::uint32_t>& vertices() const { return vertices_; }
+  /// Calls body(vertex, place) for each of them with where the tool at `pose` takes it.
+  template <class Body>
+  void for_each_place(const ToolPose& pose, const Body& body) const {
+    const Mat3 turn = pose.orientation.normalized().toRotationMatrix();
+    for (std::size_t k = 0; k < vertices_.size(); ++k) {
+      body(vertices_[k], Vec3(pose.position + turn * offsets_[k]));
+    }
+  }
 
  private:
-  std::vector<Hold> holds_;
-  bool was_closed_ = false;
+  std::vector<std::uint32_t> vertices_;
+  // From the tool's centre, in the tool's frame.
+  std::vector<Vec3> offsets_;
+  Jaw jaw_;
 };
 
 }  // namespace tissue

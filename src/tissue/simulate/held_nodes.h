@@ -8,13 +8,12 @@
 namespace tissue {
 
 /// The nodes of a solid that do not move by themselves: vertices that anchors or tools hold, and
-/// the midpoints between two such; of two that a patch holds, only those on the surface.
+/// the midpoints between two such.
 class HeldNodes {
  public:
   /// References must outlive this. `anchor_of_vertex` as anchors_of_vertices() gives it.
-  HeldNodes(const FiniteElements& elements, const Body& body,
-            const std::vector<ToolDescription>& tools, std::size_t anchor_count,
-            std::vector<int> anchor_of_vertex);
+  HeldNodes(const FiniteElements& elements, const std::vector<ToolDescription>& tools,
+            std::size_t anchor_count, std::vector<int> anchor_of_vertex);
 
   /// Tools take hold or let go. True if that changed what is held.
   bool update(const ToolPoses& tools, const std::vector<Vec3>& vertices_now);
@@ -24,24 +23,22 @@ class HeldNodes {
 
   /// For each node whether it is held.
   std::vector<std::uint8_t> flags() const;
-  /// The motion of held nodes from `positions` to where the tools take them, and of midpoints
-  /// that no tool holds itself to half-way between their ends.
+  /// The motion of held nodes from `positions` to where the tools take them: vertices as parts of
+  /// the tool, midpoints half-way between their ends.
   Eigen::VectorXd motion_to(const ToolPoses& tools, const Eigen::VectorXd& positions) const;
-  /// The motion of what a tool at `pose` holds if the places that it carries move as `motion_at`
-  /// says for their offset from its centre.
-  Eigen::VectorXd motion_of(std::size_t tool, const ToolPose& pose, Eigen::Index coordinates,
+  /// The motion of what a tool holds, as `motion_at` says for an offset from `centre`.
+  Eigen::VectorXd motion_of(std::size_t tool, const Eigen::VectorXd& positions, const Vec3& centre,
                             const std::function<Vec3(const Vec3&)>& motion_at) const;
   /// Puts the vertices that tools hold exactly where they belong.
   void place(const ToolPoses& tools, std::vector<Vec3>& vertices) const;
 
-  /// The tissue's force on each holder [N], anchors first, then tools: minus dE along its motion.
-  /// What a patch's rim does not give to its tool, nobody bears.
+  /// Minus the sum of dE/dx over what each holder holds, anchors first, then tools: the tissue's
+  /// force on it [N].
   std::vector<Vec3> forces(const Eigen::VectorXd& gradient) const;
 
  private:
+  bool is_held_midpoint(std::size_t midpoint) const;
   void find_holders();
-  void take_midpoints(std::size_t tool, const ToolPose& pose,
-                      const std::vector<Vec3>& vertices_now);
 
   const FiniteElements& elements_;
   const std::vector<ToolDescription>& tools_;
@@ -49,10 +46,6 @@ class HeldNodes {
   std::size_t anchor_count_;
   // Who holds each vertex: an anchor; an anchor or (counted on) a tool.
   std::vector<int> anchor_of_vertex_, holders_;
-  // Midpoints, counted from 0, that are held half-way between their ends.
-  std::vector<std::size_t> halfway_;
-  // A flag for each vertex and midpoint; empty where no tool asks.
-  std::vector<std::uint8_t> on_surface_;
 };
 
 }  // namespace tissue

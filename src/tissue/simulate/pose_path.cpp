@@ -16,7 +16,7 @@ class Line {
   Line(const std::string& path, int number) : place_(path + ", line " + std::to_string(number)) {}
 
   [[noreturn]] void refuse(ErrorCode code, const std::string& what) const {
-    throw InputError(code, "--path: " + place_ + ": " + what);
+    throw InputError(code, "path: " + place_ + ": " + what);
   }
 
   std::vector<double> numbers(const std::string& text) const {
@@ -46,7 +46,7 @@ class Line {
 
 std::vector<StampedPose> read_poses(const std::string& path) {
   std::ifstream file(path);
-  if (!file) throw InputError(ErrorCode::kFile, "--path: '" + path + "' cannot be read");
+  if (!file) throw InputError(ErrorCode::kFile, "path: '" + path + "' cannot be read");
   std::vector<StampedPose> poses;
   std::string text;
   for (int number = 1; std::getline(file, text); ++number) {
@@ -68,8 +68,30 @@ std::vector<StampedPose> read_poses(const std::string& path) {
     if (v.size() == 9) pose.closed = v[8] > 0.5;
     poses.push_back({v[0], pose});
   }
-  if (poses.empty()) throw InputError(ErrorCode::kFile, "--path: '" + path + "' has no poses");
+  if (poses.empty()) throw InputError(ErrorCode::kFile, "path: '" + path + "' has no poses");
   return poses;
+}
+
+std::vector<std::vector<StampedPose>> read_paths(
+    const SceneDescription& scene, const std::vector<std::string>& files,
+    const std::function<std::string(const std::string&)>& locate) {
+  std::vector<std::vector<StampedPose>> paths(scene.tools.size());
+  for (const std::string& named : files) {
+    const std::size_t equals = named.find('=');
+    const std::string tool = equals == std::string::npos ? "" : named.substr(0, equals);
+    const std::string file = equals == std::string::npos ? named : named.substr(equals + 1);
+    std::size_t which = 0;
+    while (!tool.empty() && which < scene.tools.size() && scene.tools[which].name != tool) ++which;
+    if (which >= scene.tools.size()) {
+      throw InputError(ErrorCode::kParam, "path: the scene has no tool '" + tool + "'");
+    }
+    if (!paths[which].empty()) {
+      throw InputError(ErrorCode::kParam,
+                       "path: tool " + scene.tools[which].name + " has two paths");
+    }
+    paths[which] = read_poses(locate ? locate(file) : file);
+  }
+  return paths;
 }
 
 std::vector<Instant> merged(const std::vector<std::vector<StampedPose>>& paths) {

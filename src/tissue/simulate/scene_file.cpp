@@ -1,6 +1,7 @@
 #include "tissue/simulate/scene_file.h"
 
 #include "anchor_reader.h"
+#include "material_reader.h"
 
 #include <algorithm>
 #include <set>
@@ -9,33 +10,6 @@ namespace tissue {
 namespace {
 
 constexpr double kHuge = 1e12;
-
-Material material_from(const YamlReader& reader, bool by_density) {
-  reader.require_keys({"young", "poisson", "mass_density"});
-  Material material;
-  if (reader.has("young")) {
-    const YamlReader young = reader.at("young");
-    material.young.clear();
-    for (const YamlReader& row : young.entries()) {
-      const std::vector<YamlReader> pair = row.entries();
-      if (pair.size() != 2) row.refuse("is not a pair [density, Pa]");
-      const double density = pair[0].number(0.0, kHuge);
-      if (!material.young.empty() && !(density > material.young.back()[0])) {
-        pair[0].refuse(ErrorCode::kParam, "densities do not rise");
-      }
-      material.young.push_back({density, pair[1].number(0.0, kHuge, true)});
-    }
-    if (material.young.empty()) young.refuse("has no rows");
-    if (!by_density && material.young.size() > 1) {
-      young.refuse("has several rows, which needs the effect density_response");
-    }
-  }
-  if (reader.has("poisson")) material.poisson = reader.at("poisson").number(-1.0, 0.5, true);
-  if (reader.has("mass_density")) {
-    material.mass_density = reader.at("mass_density").number(0.0, kHuge, true);
-  }
-  return material;
-}
 
 Vec3 place_from(const YamlReader& reader, const char* what) {
   const std::vector<YamlReader> entries = reader.entries();
@@ -76,10 +50,17 @@ ToolDescription tool_from(const YamlReader& entry) {
   tool.name = entry.at("name").word();
   if (entry.has("shape")) {
     const YamlReader shape = entry.at("shape");
-    shape.require_keys({"sphere", "patch"});
+    shape.require_keys({"sphere", "pad"});
     if (shape.members().size() != 1) shape.refuse("is not one shape");
-    if (shape.has("patch")) tool.shape = ToolShape::kPatch;
-    tool.radius = shape.members()[0].number(0.0, 1.0, true);
+    if (shape.has("sphere")) {
+      tool.radius = shape.at("sphere").number(0.0, 1.0, true);
+    } else {
+      const YamlReader pad = shape.at("pad");
+      pad.require_keys({"radius", "stiffness"});
+      tool.shape = ToolShape::kPad;
+      tool.radius = pad.at("radius").number(0.0, 1.0, true);
+      if (pad.has("stiffness")) tool.pad_stiffness = pad.at("stiffness").number(0.0, kHuge, true);
+    }
   }
   if (entry.has("mode")) {
     const std::string mode = entry.at("mode").word();

@@ -1,6 +1,7 @@
 #include "deformation_model.h"
 #include "dynamics.h"
 #include "held_nodes.h"
+#include "pads.h"
 #include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/gravity.h"
@@ -51,7 +52,7 @@ class SolidModel : public DeformationModel {
       : scene_(scene),
         body_(body),
         elements_(body, scene.element_order),
-        held_(elements_, body, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
+        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
         rest_(rest_positions(elements_)),
         positions_(rest_) {
     make_tissue(costs, threads);
@@ -63,6 +64,7 @@ class SolidModel : public DeformationModel {
       cost->bytes = gravity_->bytes();
       potentials_.push_back(&*counted_gravity_);
     }
+    make_springs();
     std::vector<const Energy*> energies = potentials_;
     if (scene.has(Effect::kInertia)) {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
@@ -73,27 +75,31 @@ class SolidModel : public DeformationModel {
   }
 
   StepReport step(const ToolPoses& tools, double dt) override {
-    const bool regrip = held_.update(tools, state_.positions);
+    bool regrip = held_.update(tools, state_.positions);
+    if (pads_) regrip = pads_->update(tools, positions_now()) || regrip;
     if (dynamics_) {
       if (regrip) equilibrium_->hold(held_.flags());
+      if (pads_) springs_->move(pads_->motion_to(tools));
       if (dt > 0.0) swing(tools, dt);
       return report_;
     }
-    if (scene_.model == Model::kLinear && !regrip && settled_) {
+    if (scene_.model == Model::kLinear && !pads_ && !regrip && settled_) {
       superpose(tools);
       return report_;
     }
     positions_ = positions_now();
     response_.reset();
     if (regrip) equilibrium_->hold(held_.flags());
-    const Eigen::VectorXd motion = held_.motion_to(tools, positions_);
-    if (regrip || !settled_ || !motion.isZero(0.0)) move(motion);
+    Motion motion = {held_.motion_to(tools, positions_), {}};
+    if (pads_) motion.pads = pads_->motion_to(tools);
+    if (regrip || !settled_ || !motion.is_zero()) move(motion);
     last_tools_ = tools;
     return report_;
   }
 
   void reset() override {
     held_.release();
+    if (pads_) pads_->release();
     equilibrium_->hold(held_.flags());
     response_.reset();
     positions_ = rest_;
@@ -148,6 +154,12 @@ class SolidModel : public DeformationModel {
   }
 
  private:
+  // Of held nodes, and of the tools' ends of pads.
+  struct Motion {
+    Eigen::VectorXd nodes, pads;
+    bool is_zero() const { return nodes.isZero(0.0) && pads.isZero(0.0); }
+  };
+
   void make_tissue(EffectCosts& costs, int threads) {
     EffectCost* const cost = costs.of(Effect::kDensityResponse);
     const CostClock clock(cost);
@@ -164,6 +176,23 @@ class SolidModel : public DeformationModel {
       tissue_ = std::move(elastic);
     }
     if (cost != nullptr) cost->bytes = bytes;
+  }
+
+  // Of soft beds and pads.
+  void make_springs() {
+    const std::vector<Bed> beds = beds_of(body_, scene_.anchors);
+    const bool any_pad = std::any_of(
+        scene_.tools.begin(), scene_.tools.end(),
+        [](const ToolDescription& tool) { return tool.shape == ToolShape::kPad; });
+    if (beds.empty() && !any_pad) return;
+    springs_.emplace(elements_, body_);
+    for (const Bed& bed : beds) {
+      springs_->attach(bed.anchor, rest_, [&](const Vec3& place) {
+        return bed.reaches(place) ? bed.stiffness : 0.0;
+      });
+    }
+    if (any_pad) pads_.emplace(scene_.tools, scene_.anchors.size(), *springs_);
+    potentials_.push_back(&*springs_);
   }
 
   // One factorisation that serves all steps, or for each step what is cheapest.
@@ -190,7 +219,7 @@ class SolidModel : public DeformationModel {
   static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
     std::vector<int> holders = anchors_of_vertices(body, scene.anchors);
     // What has inertia may fly.
-    if (!scene.has(Effect::kInertia)) require_held(body, holders);
+    if (!scene.has(Effect::kInertia)) require_held(body, holders, beds_of(body, scene.anchors));
     return holders;
   }
 
@@ -201,7 +230,12 @@ class SolidModel : public DeformationModel {
   }
 
   std::vector<Vec3> forces_on_holders() const {
-    return held_.forces(equilibrium_->gradient(positions_now()));
+    const Eigen::VectorXd positions = positions_now();
+    std::vector<Vec3> forces = held_.forces(equilibrium_->gradient(positions));
+    for (std::size_t i = 0; springs_ && i < forces.size(); ++i) {
+      forces[i] += springs_->force(i, positions);
+    }
+    return forces;
   }
 
   // Small strain: where the tools go decides where everything goes, and nothing is solved.
@@ -217,7 +251,7 @@ class SolidModel : public DeformationModel {
   // Of all nodes, also after a superposition.
   Eigen::VectorXd positions_now() const { return response_ ? response_->positions() : positions_; }
 
-  void move(const Eigen::VectorXd& motion) {
+  void move(const Motion& motion) {
     const Eigen::VectorXd before = positions_;
     report_ = {};
     settled_ = advance(motion, kMaxHalvings) && positions_.allFinite();
@@ -246,19 +280,21 @@ class SolidModel : public DeformationModel {
   }
 
   // Moves what is held by `motion` and lets the rest settle; in two halves where that fails.
-  bool advance(const Eigen::VectorXd& motion, int halvings) {
+  bool advance(const Motion& motion, int halvings) {
     const Eigen::VectorXd before = positions_;
-    if (!motion.isZero(0.0)) equilibrium_->follow(positions_, motion);
+    if (!motion.nodes.isZero(0.0)) equilibrium_->follow(positions_, motion.nodes);
+    if (pads_) springs_->move(motion.pads);
     const EquilibriumReport found = equilibrium_->solve(positions_, scene_.solver);
     report_.iterations += found.iterations;
     report_.residual = found.residual;
     report_.solver = equilibrium_->solver_name();
     report_.energy = found.energy;
     if (found.converged) return true;
-    if (halvings == 0 || motion.isZero(0.0)) return false;
+    if (pads_) springs_->move(-motion.pads);
+    if (halvings == 0 || motion.is_zero()) return false;
     positions_ = before;
-    const Eigen::VectorXd half = 0.5 * motion;
-    return advance(half, halvings - 1) && advance(motion - half, halvings - 1);
+    const Motion half = {0.5 * motion.nodes, 0.5 * motion.pads};
+    return advance(half, halvings - 1) && advance(half, halvings - 1);
   }
 
   void take_state() {
@@ -278,8 +314,10 @@ class SolidModel : public DeformationModel {
   std::unique_ptr<const Energy> tissue_;
   const ElasticEnergy* elastic_ = nullptr;
   std::optional<GravityEnergy> gravity_;
+  std::optional<SurfaceSprings> springs_;
+  std::optional<Pads> pads_;
   std::optional<CountedEnergy> counted_gravity_;
-  // Of both.
+  // Of all of them.
   std::vector<const Energy*> potentials_;
   std::unique_ptr<Dynamics> dynamics_;
   // Of all nodes.

@@ -12,9 +12,9 @@ std::vector<Eigen::VectorXd> unit_motions(const HeldNodes& held, const Eigen::Ve
                                           const ToolPoses& tools) {
   std::vector<Eigen::VectorXd> motions;
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
-    const ToolPose pose = tools[tool].value_or(ToolPose{});
+    const Vec3 centre = tools[tool] ? tools[tool]->position : Vec3(Vec3::Zero());
     const auto add = [&](const std::function<Vec3(const Vec3&)>& motion_at) {
-      motions.push_back(held.motion_of(tool, pose, base.size(), motion_at));
+      motions.push_back(held.motion_of(tool, base, centre, motion_at));
     };
     for (int axis = 0; axis < 3; ++axis) {
       add([&](const Vec3&) -> Vec3 { return Vec3::Unit(axis); });

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-namespace tissue_test {
+namespace tissue {
 
 /// By how much the program's resident memory has been above what it was when this was made, at
 /// most.
@@ -32,4 +32,4 @@ class PeakMemory {
   double before_;
 };
 
-}  // namespace tissue_test
+}  // namespace tissue

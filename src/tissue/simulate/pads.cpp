@@ -1,0 +1,67 @@
+#include "pads.h"
+
+#include <algorithm>
+
+namespace tissue {
+namespace {
+
+// From 1 in the middle of a pad to 0 at its rim, level at both.
+double share_at(double distance, double radius) {
+  const double part = std::min(distance / radius, 1.0);
+  return (1.0 - part * part) * (1.0 - part * part);
+}
+
+}  // namespace
+
+Pads::Pads(const std::vector<ToolDescription>& tools, std::size_t first_holder,
+           SurfaceSprings& springs)
+    : tools_(tools), first_holder_(first_holder), springs_(springs), pads_(tools.size()) {}
+
+bool Pads::update(const ToolPoses& tools, const Eigen::VectorXd& positions) {
+  bool changed = false;
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    const ToolDescription& tool = tools_[i];
+    if (tool.shape != ToolShape::kPad) continue;
+    const std::size_t holder = first_holder_ + i;
+    switch (pads_[i].jaw.act(tools[i], !pads_[i].offsets.empty())) {
+      case Jaw::Act::kNothing: continue;
+      case Jaw::Act::kRelease:
+        springs_.detach(holder);
+        pads_[i].offsets.clear();
+        break;
+      case Jaw::Act::kTake:
+        springs_.attach(holder, positions, [&](const Vec3& place) {
+          return tool.pad_stiffness * share_at((place - tools[i]->position).norm(), tool.radius);
+        });
+        for (const SurfaceSprings::Spring& spring : springs_.springs()) {
+          if (spring.holder != holder) continue;
+          pads_[i].offsets.push_back(tools[i]->orientation.normalized().conjugate() *
+                                     (spring.target - tools[i]->position));
+        }
+    }
+    changed = true;
+  }
+  return changed;
+}
+
+void Pads::release() {
+  for (std::size_t i = 0; i < pads_.size(); ++i) springs_.detach(first_holder_ + i);
+  pads_.assign(tools_.size(), {});
+}
+
+Eigen::VectorXd Pads::motion_to(const ToolPoses& tools) const {
+  const std::vector<SurfaceSprings::Spring>& springs = springs_.springs();
+  Eigen::VectorXd motion = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * springs.size()));
+  std::vector<std::size_t> next(tools_.size(), 0);
+  for (std::size_t i = 0; i < springs.size(); ++i) {
+    if (springs[i].holder < first_holder_) continue;
+    const std::size_t tool = springs[i].holder - first_holder_;
+    const Vec3& offset = pads_[tool].offsets[next[tool]++];
+    if (!tools[tool]) continue;
+    const Vec3 place = tools[tool]->position + tools[tool]->orientation.normalized() * offset;
+    motion.segment<3>(static_cast<Eigen::Index>(3 * i)) = place - springs[i].target;
+  }
+  return motion;
+}
+
+}  // namespace tissue
