@@ -40,8 +40,8 @@ po::options_description options() {
       "list", "print number and description of every row, and run none")(
       "row", po::value<std::size_t>(), "run this row only, even if it is there")(
       "merge", "write the table of the rows that are there, and run none")(
-      "jobs", po::value<int>()->default_value(1), "rows at a time; more disturb each other's times")(
-      "help,h", "show this");
+      "jobs", po::value<int>()->default_value(1),
+      "rows at a time; more disturb each other's times")("help,h", "show this");
   return all;
 }
 
@@ -89,13 +89,14 @@ void merge(const tissue::Study& study, const Places& places) {
           .dump(2));
   std::printf("%zu of %zu rows are in %s, %zu of them failed\n", there, results.size(),
               path("results.csv").c_str(), failed);
-  if (noise) std::printf("step times of a row that was run again lie within %.0f %%\n", 100.0 * *noise);
+  if (noise)
+    std::printf("step times of a row that was run again lie within %.0f %%\n", 100.0 * *noise);
 }
 
 pid_t start_row(const Places& places, std::size_t row) {
   const std::string number = std::to_string(row);
-  std::vector<std::string> words = {"accuracy_study", places.study_file, "-o", places.folder,
-                                    "--row", number};
+  std::vector<std::string> words = {"accuracy_study", places.study_file, "-o",
+                                    places.folder,    "--row",           number};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);

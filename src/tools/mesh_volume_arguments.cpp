@@ -178,8 +178,8 @@ MeshVolumeArguments mesh_volume_arguments(const po::variables_map& given) {
   tissue::MeshOptions& mesh = result.mesh;
   const std::optional<tissue::Method> method = tissue::method_named(text("method"));
   if (!method) {
-    throw InputError(ErrorCode::kParam, "--method: '" + text("method") + "' is not " +
-                                            tissue::method_names());
+    throw InputError(ErrorCode::kParam,
+                     "--method: '" + text("method") + "' is not " + tissue::method_names());
   }
   mesh.method = *method;
   result.scene = text("scene");

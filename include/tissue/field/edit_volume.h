@@ -16,6 +16,9 @@ struct Tumour {
 /// value.
 void insert_tumour(Volume& volume, const Tumour& tumour);
 
+/// Sets every voxel. Throws InputError E_PARAM if the voxel type cannot hold the value.
+void fill_volume(Volume& volume, double value);
+
 /// An axis-aligned box in the world [m].
 struct Box {
   Vec3 low = Vec3::Zero();

@@ -20,9 +20,9 @@ std::vector<double> strain_difficulty(const Body& body, const std::vector<Vec3>&
 
 /// A mesh that is fine where the scene strains the tissue in a way that linear tets cannot follow.
 /// A pilot mesh goes through the scene; its estimates of the error, summed over the instants, say
-/// where `target_tetrahedra` tets do most good, and the lattice is given those levels, of which there
-/// are `levels.sections`. Densities decide nothing. Stages of the statistics: that of the pilot is
-/// `pilot`, that of fitting the total `search`.
+/// where `target_tetrahedra` tets do most good, and the lattice is given those levels, of which
+/// there are `levels.sections`. Densities decide nothing. Stages of the statistics: that of the
+/// pilot is `pilot`, that of fitting the total `search`.
 ///
 /// Throws InputError as build_mesh() and Scene; E_PARAM without `target_tetrahedra`, E_SCENE where
 /// the scene moves nothing.

@@ -12,20 +12,26 @@ struct StudyProblem {
   /// File, and the value above which it is organ.
   std::string volume;
   double iso_value = 20.0;
-  /// The organ is where the volume exceeds the value, smoothed by a Gaussian of so many voxels: folds
-  /// narrower than tets would otherwise open and close from mesh to mesh. 0: as it is.
+  /// The organ is where the volume exceeds the value, smoothed by a Gaussian of so many voxels:
+  /// folds narrower than tets would otherwise open and close from mesh to mesh. 0: as it is.
   double smoothing = 0.0;
+  /// If given, the value of all tissue but the tumours, in place of the image's.
+  std::optional<double> tissue;
   std::vector<Tumour> tumours;
   SceneMotion motion;
   /// Everything that it was read from: a result made from another text is stale.
   std::string source;
 };
 
+/// What wishes levels, for meshes of method `kWished`: where the problem's scene strains the
+/// tissue, or one of the experiments of tumour_wishes.h.
+enum class Wishes { kStrain, kBorder, kTissue };
+
 /// A way to mesh an organ, for any number of tets.
 struct StudyMesh {
   std::string name;
-  /// Of method `kWished`: sized by where the problem's scene strains the tissue.
   MeshOptions options;
+  Wishes wishes = Wishes::kStrain;
   std::string source;
 };
 

@@ -24,8 +24,8 @@ Difference difference(const RowResult& result, const RowResult& reference);
 /// measured against.
 std::string study_table(const Study& study, const std::vector<std::optional<RowResult>>& results);
 
-/// How far apart step times of the same row, run again, were: (largest − smallest) / median; nothing
-/// where none was repeated.
+/// How far apart step times of the same row, run again, were: (largest − smallest) / median;
+/// nothing where none was repeated.
 std::optional<double> noise(const Study& study,
                             const std::vector<std::optional<RowResult>>& results);
 

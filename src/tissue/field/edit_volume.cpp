@@ -50,7 +50,30 @@ Vec3 place_of(const Grid& grid, std::int64_t x, std::int64_t y, std::int64_t z) 
       .cwiseProduct(grid.spacing);
 }
 
+// The voxel that stands for a value.
+template <class T>
+T voxel_for(const Volume& volume, double value, const char* what) {
+  double raw = (value - volume.intercept) / volume.slope;
+  if (!std::is_floating_point_v<T>) raw = std::round(raw);
+  if (raw >= static_cast<double>(std::numeric_limits<T>::lowest()) &&
+      raw <= static_cast<double>(std::numeric_limits<T>::max())) {
+    return static_cast<T>(raw);
+  }
+  throw InputError(ErrorCode::kParam, std::string(what) + ": value " + to_text(value) +
+                                          " does not fit into voxels of " +
+                                          encoding_name(volume.voxels));
+}
+
 }  // namespace
+
+void fill_volume(Volume& volume, double value) {
+  std::visit(
+      [&](auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        std::fill(values.begin(), values.end(), voxel_for<T>(volume, value, "tissue"));
+      },
+      volume.voxels);
+}
 
 void insert_tumour(Volume& volume, const Tumour& tumour) {
   if (!tumour.centre.allFinite() || !std::isfinite(tumour.value)) {
@@ -68,18 +91,11 @@ void insert_tumour(Volume& volume, const Tumour& tumour) {
   std::visit(
       [&](auto& values) {
         using T = typename std::decay_t<decltype(values)>::value_type;
-        double raw = (tumour.value - volume.intercept) / volume.slope;
-        if (!std::is_floating_point_v<T>) raw = std::round(raw);
-        if (raw < static_cast<double>(std::numeric_limits<T>::lowest()) ||
-            raw > static_cast<double>(std::numeric_limits<T>::max())) {
-          throw InputError(ErrorCode::kParam, "tumour: value " + to_text(tumour.value) +
-                                                  " does not fit into voxels of " +
-                                                  encoding_name(volume.voxels));
-        }
+        const T raw = voxel_for<T>(volume, tumour.value, "tumour");
         bool hit = false;
         for_each_index(box, [&](std::int64_t x, std::int64_t y, std::int64_t z) {
           if ((place_of(grid, x, y, z) - centre).norm() > tumour.radius) return;
-          values[static_cast<std::size_t>(x + y * row + z * slice)] = static_cast<T>(raw);
+          values[static_cast<std::size_t>(x + y * row + z * slice)] = raw;
           hit = true;
         });
         if (!hit) {

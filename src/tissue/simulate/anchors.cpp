@@ -165,8 +165,7 @@ std::vector<Bed> beds_of(const Body& body, const std::vector<Anchor>& anchors) {
   return beds;
 }
 
-void require_held(const Body& body, const std::vector<int>& holders,
-                  const std::vector<Bed>& beds) {
+void require_held(const Body& body, const std::vector<int>& holders, const std::vector<Bed>& beds) {
   const std::vector<std::uint32_t> parts = parts_of(body);
   const Bounds bounds(body);
   const double size = (bounds.high - bounds.low).norm();
@@ -179,8 +178,8 @@ void require_held(const Body& body, const std::vector<int>& holders,
   for (const Triangle& triangle : body.surface) {
     for (const std::uint32_t v : triangle) {
       const Vec3 place = body.rest[v].cast<double>();
-      const bool lies_on_bed = std::any_of(beds.begin(), beds.end(),
-                                           [&](const Bed& bed) { return bed.reaches(place); });
+      const bool lies_on_bed =
+          std::any_of(beds.begin(), beds.end(), [&](const Bed& bed) { return bed.reaches(place); });
       if (lies_on_bed) spans[parts[v]].add(place, size);
     }
   }

@@ -59,8 +59,8 @@ std::vector<StampedPose> read_poses(const std::string& path) {
                   "a quaternion of norm " + to_text(turn.norm()) + " is no rotation");
     }
     if (!poses.empty() && v[0] < poses.back().time) {
-      line.refuse(ErrorCode::kDt, "time " + to_text(v[0]) + " lies before " +
-                                      to_text(poses.back().time));
+      line.refuse(ErrorCode::kDt,
+                  "time " + to_text(v[0]) + " lies before " + to_text(poses.back().time));
     }
     ToolPose pose;
     pose.position = {v[1], v[2], v[3]};

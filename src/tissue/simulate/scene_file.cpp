@@ -83,13 +83,12 @@ std::vector<ToolDescription> tools_from(const YamlReader& reader, Model model) {
     }
     if (model != Model::kClosedForm && !tools.back().grasps) {
       entry.refuse(std::string("a tool that presses needs the effect contact; "
-                                                  "without it, model ") +
-                                          name(model) + " moves under tools of mode grasp");
+                               "without it, model ") +
+                   name(model) + " moves under tools of mode grasp");
     }
   }
   if (model == Model::kClosedForm && tools.size() != 1) {
-    reader.refuse(
-                  "model closed_form moves under one tool, not " + std::to_string(tools.size()));
+    reader.refuse("model closed_form moves under one tool, not " + std::to_string(tools.size()));
   }
   return tools;
 }
@@ -127,8 +126,8 @@ void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::
     for (const Effect one : all_effects()) {
       if (can_have(scene.model, one)) list += std::string(" ") + name(one);
     }
-    entry.refuse("'" + effect + "' is not an effect of model " +
-                                        name(scene.model) + ", which knows" + list);
+    entry.refuse("'" + effect + "' is not an effect of model " + name(scene.model) +
+                 ", which knows" + list);
   }
   scene.effects.push_back(*known);
   const auto parameters = [&](std::initializer_list<const char*> keys) {
@@ -188,8 +187,7 @@ SceneDescription scene_from(const YamlReader& file) {
       file.at("element_order").refuse(ErrorCode::kParam, "is neither 1 nor 2");
     }
     if (order != 1.0 && scene.model == Model::kMassSpring) {
-      file.at("element_order")
-          .refuse("of 2 needs tissue as a solid, not springs");
+      file.at("element_order").refuse("of 2 needs tissue as a solid, not springs");
     }
     scene.element_order = static_cast<int>(order);
   }
@@ -207,8 +205,7 @@ SceneDescription scene_from(const YamlReader& file) {
     std::set<std::string> seen;
     for (const YamlReader& effect : file.at("effects").entries()) add_effect(effect, scene, seen);
     if (scene.has(Effect::kDamping) && !scene.has(Effect::kInertia)) {
-      file.at("effects").refuse(
-                                "names damping without inertia: nothing swings that it could damp");
+      file.at("effects").refuse("names damping without inertia: nothing swings that it could damp");
     }
   }
   if (file.has("material")) {

@@ -181,15 +181,14 @@ class SolidModel : public DeformationModel {
   // Of soft beds and pads.
   void make_springs() {
     const std::vector<Bed> beds = beds_of(body_, scene_.anchors);
-    const bool any_pad = std::any_of(
-        scene_.tools.begin(), scene_.tools.end(),
-        [](const ToolDescription& tool) { return tool.shape == ToolShape::kPad; });
+    const bool any_pad =
+        std::any_of(scene_.tools.begin(), scene_.tools.end(),
+                    [](const ToolDescription& tool) { return tool.shape == ToolShape::kPad; });
     if (beds.empty() && !any_pad) return;
     springs_.emplace(elements_, body_);
     for (const Bed& bed : beds) {
-      springs_->attach(bed.anchor, rest_, [&](const Vec3& place) {
-        return bed.reaches(place) ? bed.stiffness : 0.0;
-      });
+      springs_->attach(bed.anchor, rest_,
+                       [&](const Vec3& place) { return bed.reaches(place) ? bed.stiffness : 0.0; });
     }
     if (any_pad) pads_.emplace(scene_.tools, scene_.anchors.size(), *springs_);
     potentials_.push_back(&*springs_);

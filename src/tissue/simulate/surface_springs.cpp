@@ -36,8 +36,7 @@ SurfaceSprings::SurfaceSprings(const FiniteElements& elements, const Body& body)
     std::map<Edge, std::uint32_t> midpoint;
     for (std::uint32_t i = 0; i < elements.midpoints().size(); ++i) {
       const auto ends = std::minmax(elements.midpoints()[i][0], elements.midpoints()[i][1]);
-      midpoint[{ends.first, ends.second}] =
-          static_cast<std::uint32_t>(elements.vertex_count()) + i;
+      midpoint[{ends.first, ends.second}] = static_cast<std::uint32_t>(elements.vertex_count()) + i;
     }
     triangles_.clear();
     for (const Triangle& corners : body.surface) {
@@ -54,8 +53,8 @@ SurfaceSprings::SurfaceSprings(const FiniteElements& elements, const Body& body)
   }
   for (const Triangle& t : triangles_) {
     const Vec3& origin = elements.rest()[t[0]];
-    areas_.push_back(
-        0.5 * (elements.rest()[t[1]] - origin).cross(elements.rest()[t[2]] - origin).norm());
+    areas_.push_back(0.5 *
+                     (elements.rest()[t[1]] - origin).cross(elements.rest()[t[2]] - origin).norm());
   }
 }
 
@@ -93,7 +92,7 @@ void SurfaceSprings::move(const Eigen::VectorXd& motion) {
 }
 
 double SurfaceSprings::evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
-                           Hessian* hessian) const {
+                                Hessian* hessian) const {
   double sum = 0.0;
   for (const Spring& spring : springs_) {
     const Vec3 off = node(positions, spring.node) - spring.target;

@@ -8,6 +8,7 @@
 #include "tissue/simulate/scene_run.h"
 #include "tissue/study/leave_out.h"
 #include "tissue/study/material_places.h"
+#include "tissue/study/tumour_wishes.h"
 
 #include <algorithm>
 #include <chrono>
@@ -23,13 +24,19 @@ constexpr double kReferenceTolerance = 1e-5;
 
 TetMesh mesh_for(const StudyProblem& problem, const std::shared_ptr<const Volume>& volume,
                  const ImplicitSurface& surface, const StudyMesh& mesh, const StudyRow& row,
-                 int threads, const Run& run) {
+                 double tumour_above, int threads, const Run& run) {
   MeshOptions options = mesh.options;
   options.iso_value = problem.iso_value;
   options.target_tetrahedra = row.tetrahedra;
   options.threads = threads;
-  if (options.method == Method::kWished) {
+  if (options.method == Method::kWished && mesh.wishes == Wishes::kStrain) {
     return build_strain_mesh(volume, surface, options, problem.motion, run).mesh;
+  }
+  const int finest = options.levels.sections - 1;
+  if (mesh.wishes == Wishes::kBorder) {
+    options.wishes = border_wishes(*volume, surface, tumour_above, finest);
+  } else if (mesh.wishes == Wishes::kTissue) {
+    options.wishes = tissue_wishes(*volume, surface, tumour_above, finest);
   }
   return build_mesh(volume, surface, options, run).mesh;
 }
@@ -166,9 +173,14 @@ void run_or_throw(const Study& study, const StudyRow& row, const Run& run, RowRe
   auto volume = std::make_shared<Volume>(read_volume(problem.volume));
   for (const Tumour& tumour : problem.tumours) insert_tumour(*volume, tumour);
   const ImplicitSurface surface = surface_for(problem, volume);
+  if (problem.tissue) {
+    volume = std::make_shared<Volume>(*volume);
+    fill_volume(*volume, *problem.tissue);
+    for (const Tumour& tumour : problem.tumours) insert_tumour(*volume, tumour);
+  }
   const SamplePoints points = sample_points(*volume, surface, study.points);
-  const TetMesh mesh =
-      mesh_for(problem, volume, surface, study.meshes[row.mesh], row, study.threads, run);
+  const TetMesh mesh = mesh_for(problem, volume, surface, study.meshes[row.mesh], row,
+                                study.points.tumour_above, study.threads, run);
   for (const StageCost& stage : mesh.statistics.stages) {
     if (stage.name != "search") result.meshing_seconds += stage.cpu_seconds;
   }

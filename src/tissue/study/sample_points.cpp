@@ -22,8 +22,8 @@ using Cell = std::array<int, 3>;
 std::vector<Cell> cells_inside(const Grid& grid, double step, const Inside& inside) {
   std::array<int, 3> counts{};
   for (int axis = 0; axis < 3; ++axis) {
-    counts[axis] = 1 + static_cast<int>(grid.spacing[axis] *
-                                        static_cast<double>(grid.size[axis] - 1) / step);
+    counts[axis] =
+        1 + static_cast<int>(grid.spacing[axis] * static_cast<double>(grid.size[axis] - 1) / step);
   }
   std::vector<Cell> cells;
   for (int z = 0; z < counts[2]; ++z) {
@@ -51,8 +51,8 @@ std::vector<Cell> largest_part(const std::vector<Cell>& cells) {
   }
   std::vector<std::size_t> sizes(cells.size(), 0);
   for (std::uint32_t i = 0; i < cells.size(); ++i) ++sizes[parts.find(i)];
-  const auto largest = static_cast<std::uint32_t>(
-      std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
+  const auto largest =
+      static_cast<std::uint32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
   std::vector<Cell> part;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
     if (parts.find(i) == largest) part.push_back(cells[i]);
@@ -82,17 +82,16 @@ SamplePoints sample_points(const Volume& volume, const ImplicitSurface& surface,
       };
       SamplePoints points;
       const double organ_step = std::cbrt(voxel_volume_inside(surface) / options.organ);
-      points.organ = in_world(grid, organ_step,
-                              largest_part(cells_inside(grid, organ_step, in_organ)));
+      points.organ =
+          in_world(grid, organ_step, largest_part(cells_inside(grid, organ_step, in_organ)));
       // How large the tumour is, the voxels say.
       const double voxel = std::cbrt(grid.spacing.prod());
       const std::size_t voxels = cells_inside(grid, voxel, in_tumour).size();
       if (voxels == 0) {
-        throw InputError(ErrorCode::kParam, "tumour_above: no tissue is denser than " +
-                                                to_text(options.tumour_above));
+        throw InputError(ErrorCode::kParam,
+                         "tumour_above: no tissue is denser than " + to_text(options.tumour_above));
       }
-      const double tumour_step =
-          voxel * std::cbrt(static_cast<double>(voxels) / options.tumour);
+      const double tumour_step = voxel * std::cbrt(static_cast<double>(voxels) / options.tumour);
       points.tumour = in_world(grid, tumour_step, cells_inside(grid, tumour_step, in_tumour));
       return points;
     });

@@ -1,5 +1,6 @@
 #include "tissue/study/strain_mesh.h"
 
+#include "tet_samples.h"
 #include "tissue/base/error.h"
 #include "tissue/base/stage_clock.h"
 #include "tissue/study/material_places.h"
@@ -20,15 +21,6 @@ constexpr int kRounds = 30;
 
 double long_edge(double volume) { return std::cbrt(12.0 * volume); }
 
-// Places that stand for a tet: its centroid and half-way from there to its corners.
-constexpr std::size_t kPlacesPerTet = 5;
-void add_places(const std::vector<Vec3>& vertices, const Tet& tet, std::vector<Vec3>& places) {
-  Vec3 centroid = Vec3::Zero();
-  for (const std::uint32_t v : tet) centroid += 0.25 * vertices[v];
-  places.push_back(centroid);
-  for (const std::uint32_t v : tet) places.push_back(0.5 * (centroid + vertices[v]));
-}
-
 // What a pilot found out: how hard tissue is to get right, anywhere.
 struct Pilot {
   Body body;
@@ -36,11 +28,15 @@ struct Pilot {
 
   std::vector<double> at(const std::vector<Vec3>& vertices, const std::vector<Tet>& tets) const {
     std::vector<Vec3> places;
-    for (const Tet& tet : tets) add_places(vertices, tet, places);
+    for (const Tet& tet : tets) {
+      const auto samples = tet_samples(vertices, tet);
+      places.insert(places.end(), samples.begin(), samples.end());
+    }
     const std::vector<TetPlace> in_body = material_places(body, places);
+    const std::size_t per_tet = places.size() / tets.size();
     std::vector<double> means(tets.size(), 0.0);
     for (std::size_t i = 0; i < in_body.size(); ++i) {
-      means[i / kPlacesPerTet] += difficulty[in_body[i].tet] / kPlacesPerTet;
+      means[i / per_tet] += difficulty[in_body[i].tet] / static_cast<double>(per_tet);
     }
     return means;
   }
@@ -67,14 +63,14 @@ Pilot run_pilot(const std::shared_ptr<const Volume>& volume, const ImplicitSurfa
     for (std::size_t t = 0; t < now.size(); ++t) pilot.difficulty[t] += now[t];
   }
   if (*std::max_element(pilot.difficulty.begin(), pilot.difficulty.end()) > 0.0) return pilot;
-  throw InputError(ErrorCode::kScene, "scene: " + motion.scene.name +
-                                          " strains nothing on a mesh of " +
-                                          std::to_string(body->tets.size()) +
-                                          " tets; does its tool touch the organ?");
+  throw InputError(ErrorCode::kScene,
+                   "scene: " + motion.scene.name + " strains nothing on a mesh of " +
+                       std::to_string(body->tets.size()) + " tets; does its tool touch the organ?");
 }
 
 // With n tets for each unit of volume a place of difficulty g contributes g n^(−2/3) to the squared
-// error: the least for a total of tets is reached where n goes with g^(3/5), and edges with g^(−1/5).
+// error: the least for a total of tets is reached where n goes with g^(3/5), and edges with
+// g^(−1/5).
 std::vector<std::uint8_t> wishes_for(const std::vector<double>& difficulty, double lattice_edge,
                                      double unit_edge, int finest) {
   std::vector<std::uint8_t> levels;
@@ -144,6 +140,8 @@ BuiltMesh build_strain_mesh(const std::shared_ptr<const Volume>& volume,
   MeshOptions sized = options;
   sized.method = Method::kWished;
   sized.target_tetrahedra = 0;
+  // A guess may lie beyond a limit that the mesh to be found keeps.
+  sized.max_tetrahedra *= 8;
   sized.spacing = std::cbrt(12.0 * voxel_volume_inside(surface) / (kLatticePart * wished));
   // The lattice stays the same, and so does how hard its tets are.
   std::vector<double> difficulty;
@@ -169,6 +167,7 @@ BuiltMesh build_strain_mesh(const std::shared_ptr<const Volume>& volume,
   }
   unit_edge = std::exp(nearest);
   clock.stop();
+  sized.max_tetrahedra = options.max_tetrahedra;
   BuiltMesh built = build_mesh(volume, surface, sized, run);
   std::vector<StageCost>& stages = built.mesh.statistics.stages;
   stages.insert(stages.begin(), clock.stages().begin(), clock.stages().end());

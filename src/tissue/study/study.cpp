@@ -30,9 +30,8 @@ const char* name(RowPurpose purpose) {
 }
 
 std::string describe(const Study& study, const StudyRow& row) {
-  return std::string(row.purpose == RowPurpose::kMeasure
-                         ? ""
-                         : name(row.purpose) + std::string(": ")) +
+  return std::string(row.purpose == RowPurpose::kMeasure ? ""
+                                                         : name(row.purpose) + std::string(": ")) +
          study.problems[row.problem].name + ", " + study.meshes[row.mesh].name + ", " +
          std::to_string(row.tetrahedra) + " tets, " + name(row.model) + " of order " +
          std::to_string(row.element_order) +

@@ -22,8 +22,8 @@ class StudyFile {
         file_(text_of_file(path, "study"), {"study", ErrorCode::kParam}) {}
 
   Study read() {
-    file_.require_keys({"name", "volume", "iso", "smoothing", "tumour_above", "points", "threads", "problems",
-                        "meshes", "reference", "repeats", "rows"});
+    file_.require_keys({"name", "volume", "iso", "smoothing", "tumour_above", "points", "threads",
+                        "problems", "meshes", "reference", "repeats", "rows"});
     if (file_.has("name")) study_.name = file_.at("name").word();
     SamplePointOptions& points = study_.points;
     if (file_.has("points")) {
@@ -56,7 +56,7 @@ class StudyFile {
   std::string in_folder(const std::string& name) const { return (folder_ / name).string(); }
 
   void read_problem(const YamlReader& reader) {
-    reader.require_keys({"scene", "paths", "tumours", "young"});
+    reader.require_keys({"scene", "paths", "tumours", "tissue", "young"});
     StudyProblem problem;
     problem.name = reader.key();
     problem.volume = volume_;
@@ -64,8 +64,8 @@ class StudyFile {
     problem.smoothing = smoothing_;
     const std::string scene_path = in_folder(reader.at("scene").word());
     const std::string scene_text = text_of_file(scene_path, "scene");
-    problem.source = volume_ + ' ' + std::to_string(fs::file_size(volume_)) + ' ' +
-                     to_text(iso_) + ' ' + to_text(smoothing_) + '\n' + reader.text() + '\n' + scene_text;
+    problem.source = volume_ + ' ' + std::to_string(fs::file_size(volume_)) + ' ' + to_text(iso_) +
+                     ' ' + to_text(smoothing_) + '\n' + reader.text() + '\n' + scene_text;
     SceneDescription& scene = problem.motion.scene;
     scene = parse_scene(scene_text);
     std::vector<std::vector<StampedPose>> paths(scene.tools.size());
@@ -85,9 +85,9 @@ class StudyFile {
         problem.tumours.push_back({{number(0), number(1), number(2)}, number(3), number(4)});
       }
     }
+    if (reader.has("tissue")) problem.tissue = reader.at("tissue").number(-kHuge, kHuge);
     if (reader.has("young")) {
-      scene.material.young =
-          young_from(reader.at("young"), scene.has(Effect::kDensityResponse));
+      scene.material.young = young_from(reader.at("young"), scene.has(Effect::kDensityResponse));
     }
     study_.problems.push_back(std::move(problem));
   }
@@ -105,9 +105,14 @@ class StudyFile {
     StudyMesh mesh;
     mesh.name = reader.key();
     mesh.source = reader.text();
-    const std::string method = reader.at("method").word();
+    std::string method = reader.at("method").word();
+    if (method == "border") mesh.wishes = Wishes::kBorder;
+    if (method == "tissue") mesh.wishes = Wishes::kTissue;
+    if (mesh.wishes != Wishes::kStrain) method = "strain";
     const std::optional<Method> known = method_named(method);
-    if (!known) reader.at("method").refuse("'" + method + "' is not one of " + method_names());
+    if (!known)
+      reader.at("method").refuse("'" + method + "' is not one of " + method_names() +
+                                 ", nor one of the experiments border and tissue");
     MeshOptions& options = mesh.options;
     options.method = *known;
     const auto whole = [&](const char* key, int& value, int lowest, int highest) {
@@ -174,7 +179,8 @@ class StudyFile {
     return result;
   }
 
-  // What a list gives for each entry that is not the word `scene`, which stands for the scene's own.
+  // What a list gives for each entry that is not the word `scene`, which stands for the scene's
+  // own.
   template <class Value, class Read>
   static std::vector<Value> values(const YamlReader& combination, const char* key, Value own,
                                    const Read& read) {

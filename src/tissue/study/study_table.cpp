@@ -50,8 +50,8 @@ constexpr const char* kHead =
     "meshing_seconds,setup_seconds,step_seconds_median,step_seconds_p99,steps,bytes,iterations,"
     "solver,min_det_f,inverted\n";
 
-// An error is resolved if halving the reference again, which would change it by no more than half of
-// what it changed last, changes it by less than a fifth.
+// An error is resolved if halving the reference again, which would change it by no more than half
+// of what it changed last, changes it by less than a fifth.
 bool resolved(double error, double last_change) { return 0.5 * last_change < 0.2 * error; }
 
 std::string line_of(const Study& study, const Results& results, std::size_t i) {
@@ -71,9 +71,9 @@ std::string line_of(const Study& study, const Results& results, std::size_t i) {
   const auto of = [](const std::optional<Difference>& d, auto field) {
     return d ? std::optional<double>((*d).*field) : std::nullopt;
   };
-  const char* const status = result.failure.empty()                         ? "ok"
+  const char* const status = result.failure.empty()                      ? "ok"
                              : result.failure.find("NOT_CONVERGED") == 0 ? "not_converged"
-                                                                            : "failed";
+                                                                         : "failed";
   Line line;
   line.count(i).add(std::string(name(row.purpose))).add(study.problems[row.problem].name);
   line.add(study.meshes[row.mesh].name).add(std::string(name(row.model)));
@@ -86,12 +86,12 @@ std::string line_of(const Study& study, const Results& results, std::size_t i) {
   line.add(of(error, &Difference::volume_change)).add(result.volume_change);
   line.add(result.tumour.empty() ? std::nullopt
                                  : std::optional<double>(result.tumour.back().norm()));
-  line.add(result.force.empty() ? std::nullopt
-                                : std::optional<double>(result.force.back().norm()));
+  line.add(result.force.empty() ? std::nullopt : std::optional<double>(result.force.back().norm()));
   line.add(percent(of(own, &Difference::displacement))).add(of(own, &Difference::tumour));
   line.add(own ? percent(own->force) : std::nullopt);
-  line.add(std::string(
-      !error || !own ? "" : resolved(error->displacement, own->displacement) ? "yes" : "no"));
+  line.add(std::string(!error || !own                                     ? ""
+                       : resolved(error->displacement, own->displacement) ? "yes"
+                                                                          : "no"));
   line.add(result.meshing_seconds).add(result.setup_seconds).add(result.step_median);
   line.add(result.step_p99).count(result.steps).add(result.bytes);
   line.count(static_cast<std::uint64_t>(result.iterations)).add(result.solver);
@@ -104,10 +104,10 @@ std::string line_of(const Study& study, const Results& results, std::size_t i) {
 Difference difference(const RowResult& result, const RowResult& reference) {
   if (result.displacements.size() != reference.displacements.size() ||
       result.tumour.size() != reference.tumour.size()) {
-    throw InputError(ErrorCode::kSizeMismatch,
-                     "row: its " + std::to_string(result.displacements.size()) +
-                         " displacements are not the reference's " +
-                         std::to_string(reference.displacements.size()));
+    throw InputError(ErrorCode::kSizeMismatch, "row: its " +
+                                                   std::to_string(result.displacements.size()) +
+                                                   " displacements are not the reference's " +
+                                                   std::to_string(reference.displacements.size()));
   }
   Difference found;
   found.displacement = relative(result.displacements, reference.displacements);
