@@ -62,7 +62,7 @@ TEST(Layering, StagesIncludeOnlyWhatLiesToTheirLeftAndNeverRos) {
 
 TEST(Layering, OnlyTheRosFolderIncludesRos) {
   for (const std::string root : {"/src/tools", "/test/base", "/test/field", "/test/lattice",
-                                 "/test/refine", "/test/simulate", "/test/support"}) {
+                                 "/test/refine", "/test/simulate", "/test/study", "/test/support"}) {
     for (const auto& entry :
          fs::recursive_directory_iterator(std::string(TISSUE_SOURCE_DIR) + root)) {
       for (const std::string& include : includes_of(entry.path())) {

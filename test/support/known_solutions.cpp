@@ -14,23 +14,6 @@ void require(const EquilibriumReport& report) {
   throw std::runtime_error("no equilibrium: residual " + std::to_string(report.residual));
 }
 
-// Displacement of a ball of radius a in one of radius b whose
-// surface moves out by U.
-struct TumourSphere {
-  double inner, a, b;
-  TumourSphere(double radius, double outer_radius, double moved, const Lame& tissue,
-               const Lame& tumour) {
-    const double k_m = tissue.lambda + 2.0 / 3.0 * tissue.mu;
-    const double k_i = tumour.lambda + 2.0 / 3.0 * tumour.mu;
-    const double cube = radius * radius * radius;
-    // e = A + B/a³ and 3 K_i e = 3 K_m A − 4 μ_m B/a³ and A b + B/b² = U.
-    const double ratio = 3.0 * (k_m - k_i) / (3.0 * k_i + 4.0 * tissue.mu);
-    a = moved / (outer_radius + ratio * cube / (outer_radius * outer_radius));
-    b = ratio * cube * a;
-    inner = a + b / cube;
-  }
-};
-
 // Puts springs into a problem's body where there is no constitution.
 struct Springs {
   std::optional<SpringEnergy> energy;
@@ -42,6 +25,24 @@ struct Springs {
 };
 
 }  // namespace
+
+TumourSphere::TumourSphere(double radius, double outer_radius, double moved, const Lame& tissue,
+                           const Lame& tumour)
+    : radius_(radius) {
+  const double k_m = tissue.lambda + 2.0 / 3.0 * tissue.mu;
+  const double k_i = tumour.lambda + 2.0 / 3.0 * tumour.mu;
+  const double cube = radius * radius * radius;
+  // e = A + B/a³ and 3 K_i e = 3 K_m A − 4 μ_m B/a³ and A b + B/b² = U.
+  const double ratio = 3.0 * (k_m - k_i) / (3.0 * k_i + 4.0 * tissue.mu);
+  a_ = moved / (outer_radius + ratio * cube / (outer_radius * outer_radius));
+  b_ = ratio * cube * a_;
+  inner_ = a_ + b_ / cube;
+}
+
+Vec3 TumourSphere::displacement(const Vec3& place) const {
+  const double r = place.norm();
+  return r < radius_ ? Vec3(inner_ * place) : Vec3((a_ + b_ / (r * r * r)) * place);
+}
 
 double tumour_sphere_error(const TetMesh& mesh, int order, const Tissue& tissue) {
   constexpr double kRadius = 0.010, kMoved = 1e-4;
@@ -55,19 +56,14 @@ double tumour_sphere_error(const TetMesh& mesh, int order, const Tissue& tissue)
   Problem problem(std::move(body), order, tissue.value_or(Constitution::kLinear), material);
   const Springs springs(problem, material, tissue);
   const TumourSphere exact(kRadius, outer, kMoved, lame_of(3e3, 0.3), lame_of(6e4, 0.3));
-  const auto expected = [&](const Vec3& place) -> Vec3 {
-    const double r = place.norm();
-    return r < kRadius ? Vec3(exact.inner * place)
-                       : Vec3((exact.a + exact.b / (r * r * r)) * place);
-  };
   const std::vector<std::uint8_t> held = boundary_nodes(problem);
   for (std::size_t node = 0; node < held.size(); ++node) {
-    if (held[node] != 0) problem.move(node, expected(problem.elements.rest()[node]));
+    if (held[node] != 0) problem.move(node, exact.displacement(problem.elements.rest()[node]));
   }
   require(problem.solve(held));
   double squares = 0.0, all = 0.0;
   for (std::size_t node = 0; node < held.size(); ++node) {
-    const Vec3 wanted = expected(problem.elements.rest()[node]);
+    const Vec3 wanted = exact.displacement(problem.elements.rest()[node]);
     squares += (problem.displacement(node) - wanted).squaredNorm();
     all += wanted.squaredNorm();
   }

@@ -52,6 +52,9 @@ constexpr int kNobody = -1;
 /// E_SCENE for an anchor that reaches no vertex.
 std::vector<int> anchors_of_vertices(const Body& body, const std::vector<Anchor>& anchors);
 
+/// Whether it is a soft bed.
+bool is_bed(const Anchor& anchor);
+
 /// A soft bed: what lies between two planes across an axis.
 struct Bed {
   std::size_t anchor = 0;

@@ -154,12 +154,16 @@ std::vector<int> anchors_of_vertices(const Body& body, const std::vector<Anchor>
   return holds.holders();
 }
 
+bool is_bed(const Anchor& anchor) {
+  const auto* const plane = std::get_if<PlaneAnchor>(&anchor);
+  return plane != nullptr && plane->stiffness > 0.0;
+}
+
 std::vector<Bed> beds_of(const Body& body, const std::vector<Anchor>& anchors) {
   std::vector<Bed> beds;
   for (std::size_t i = 0; i < anchors.size(); ++i) {
-    const auto* const plane = std::get_if<PlaneAnchor>(&anchors[i]);
-    if (plane == nullptr || plane->stiffness == 0.0) continue;
-    beds.push_back(bed_at(*plane, Bounds(body)));
+    if (!is_bed(anchors[i])) continue;
+    beds.push_back(bed_at(std::get<PlaneAnchor>(anchors[i]), Bounds(body)));
     beds.back().anchor = i;
   }
   return beds;

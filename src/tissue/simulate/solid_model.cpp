@@ -1,15 +1,14 @@
 #include "deformation_model.h"
 #include "dynamics.h"
 #include "held_nodes.h"
-#include "pads.h"
+#include "soft_holds.h"
+#include "tet_strains.h"
 #include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/gravity.h"
 #include "tissue/simulate/multigrid_system.h"
 #include "tissue/simulate/quadratic_system.h"
 #include "tissue/simulate/spring_energy.h"
-
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <utility>
@@ -34,16 +33,6 @@ Run run_on(int threads) {
   return run;
 }
 
-TetStrain tet_strain(Constitution constitution, const Lame& lame, const Mat3& f) {
-  Mat3 cauchy = stress(constitution, lame, f);
-  // Small strain does not tell Cauchy's stress from the first Piola-Kirchhoff stress.
-  if (constitution != Constitution::kLinear) cauchy = cauchy * f.transpose() / f.determinant();
-  const Mat3 deviator = cauchy - cauchy.trace() / 3.0 * Mat3::Identity();
-  const Eigen::SelfAdjointEigenSolver<Mat3> stretches(f.transpose() * f, Eigen::EigenvaluesOnly);
-  return {std::sqrt(1.5) * deviator.norm(), std::sqrt(stretches.eigenvalues()[2]) - 1.0,
-          f.determinant()};
-}
-
 // Tissue as a solid that is always at rest: each step finds the equilibrium under its weight, held
 // by anchors and by what the tools have taken hold of.
 class SolidModel : public DeformationModel {
@@ -64,7 +53,10 @@ class SolidModel : public DeformationModel {
       cost->bytes = gravity_->bytes();
       potentials_.push_back(&*counted_gravity_);
     }
-    make_springs();
+    if (SoftHolds::are_in(scene)) {
+      soft_.emplace(scene, elements_, body);
+      potentials_.push_back(&soft_->energy());
+    }
     std::vector<const Energy*> energies = potentials_;
     if (scene.has(Effect::kInertia)) {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
@@ -76,14 +68,14 @@ class SolidModel : public DeformationModel {
 
   StepReport step(const ToolPoses& tools, double dt) override {
     bool regrip = held_.update(tools, state_.positions);
-    if (pads_) regrip = pads_->update(tools, positions_now()) || regrip;
+    if (soft_) regrip = soft_->update(tools, positions_now()) || regrip;
     if (dynamics_) {
       if (regrip) equilibrium_->hold(held_.flags());
-      if (pads_) springs_->move(pads_->motion_to(tools));
+      if (soft_) soft_->move(soft_->motion_to(tools));
       if (dt > 0.0) swing(tools, dt);
       return report_;
     }
-    if (scene_.model == Model::kLinear && !pads_ && !regrip && settled_) {
+    if (scene_.model == Model::kLinear && !(soft_ && soft_->any_pad()) && !regrip && settled_) {
       superpose(tools);
       return report_;
     }
@@ -91,7 +83,7 @@ class SolidModel : public DeformationModel {
     response_.reset();
     if (regrip) equilibrium_->hold(held_.flags());
     Motion motion = {held_.motion_to(tools, positions_), {}};
-    if (pads_) motion.pads = pads_->motion_to(tools);
+    if (soft_) motion.pads = soft_->motion_to(tools);
     if (regrip || !settled_ || !motion.is_zero()) move(motion);
     last_tools_ = tools;
     return report_;
@@ -99,7 +91,7 @@ class SolidModel : public DeformationModel {
 
   void reset() override {
     held_.release();
-    if (pads_) pads_->release();
+    if (soft_) soft_->release();
     equilibrium_->hold(held_.flags());
     response_.reset();
     positions_ = rest_;
@@ -138,19 +130,7 @@ class SolidModel : public DeformationModel {
   }
 
   std::vector<TetStrain> strains() const override {
-    if (!elastic_) return {};
-    std::vector<TetStrain> result(body_.tets.size());
-    const Eigen::VectorXd positions = positions_now();
-    for (std::size_t t = 0; t < result.size(); ++t) {
-      for (const QuadraturePoint& point : elements_.quadrature()) {
-        const TetStrain here = tet_strain(elastic_->constitution(), elastic_->lame(t),
-                                          elastic_->deformation_gradient(t, point, positions));
-        result[t].von_mises += point.weight * here.von_mises;
-        result[t].largest_strain += point.weight * here.largest_strain;
-        result[t].det_f += point.weight * here.det_f;
-      }
-    }
-    return result;
+    return elastic_ ? tet_strains(elements_, *elastic_, positions_now()) : std::vector<TetStrain>();
   }
 
  private:
@@ -176,22 +156,6 @@ class SolidModel : public DeformationModel {
       tissue_ = std::move(elastic);
     }
     if (cost != nullptr) cost->bytes = bytes;
-  }
-
-  // Of soft beds and pads.
-  void make_springs() {
-    const std::vector<Bed> beds = beds_of(body_, scene_.anchors);
-    const bool any_pad =
-        std::any_of(scene_.tools.begin(), scene_.tools.end(),
-                    [](const ToolDescription& tool) { return tool.shape == ToolShape::kPad; });
-    if (beds.empty() && !any_pad) return;
-    springs_.emplace(elements_, body_);
-    for (const Bed& bed : beds) {
-      springs_->attach(bed.anchor, rest_,
-                       [&](const Vec3& place) { return bed.reaches(place) ? bed.stiffness : 0.0; });
-    }
-    if (any_pad) pads_.emplace(scene_.tools, scene_.anchors.size(), *springs_);
-    potentials_.push_back(&*springs_);
   }
 
   // One factorisation that serves all steps, or for each step what is cheapest.
@@ -231,9 +195,7 @@ class SolidModel : public DeformationModel {
   std::vector<Vec3> forces_on_holders() const {
     const Eigen::VectorXd positions = positions_now();
     std::vector<Vec3> forces = held_.forces(equilibrium_->gradient(positions));
-    for (std::size_t i = 0; springs_ && i < forces.size(); ++i) {
-      forces[i] += springs_->force(i, positions);
-    }
+    if (soft_) soft_->add_forces(positions, forces);
     return forces;
   }
 
@@ -282,14 +244,14 @@ class SolidModel : public DeformationModel {
   bool advance(const Motion& motion, int halvings) {
     const Eigen::VectorXd before = positions_;
     if (!motion.nodes.isZero(0.0)) equilibrium_->follow(positions_, motion.nodes);
-    if (pads_) springs_->move(motion.pads);
+    if (soft_) soft_->move(motion.pads);
     const EquilibriumReport found = equilibrium_->solve(positions_, scene_.solver);
     report_.iterations += found.iterations;
     report_.residual = found.residual;
     report_.solver = equilibrium_->solver_name();
     report_.energy = found.energy;
     if (found.converged) return true;
-    if (pads_) springs_->move(-motion.pads);
+    if (soft_) soft_->move(-motion.pads);
     if (halvings == 0 || motion.is_zero()) return false;
     positions_ = before;
     const Motion half = {0.5 * motion.nodes, 0.5 * motion.pads};
@@ -313,8 +275,7 @@ class SolidModel : public DeformationModel {
   std::unique_ptr<const Energy> tissue_;
   const ElasticEnergy* elastic_ = nullptr;
   std::optional<GravityEnergy> gravity_;
-  std::optional<SurfaceSprings> springs_;
-  std::optional<Pads> pads_;
+  std::optional<SoftHolds> soft_;
   std::optional<CountedEnergy> counted_gravity_;
   // Of all of them.
   std::vector<const Energy*> potentials_;

@@ -18,6 +18,8 @@ constexpr double kLatticePart = 0.4;
 // Levels jump, so that not every total can be met.
 constexpr double kTolerance = 0.002;
 constexpr int kRounds = 30;
+// What moves less is at rest, as a fraction of the body's size.
+constexpr double kRounding = 1e-9;
 
 double long_edge(double volume) { return std::cbrt(12.0 * volume); }
 
@@ -55,14 +57,19 @@ Pilot run_pilot(const std::shared_ptr<const Volume>& volume, const ImplicitSurfa
   Scene scene(motion.scene, body, options.threads);
   const std::vector<double> young = young_of(motion.scene.material, *body);
   Pilot pilot = {*body, std::vector<double>(body->tets.size(), 0.0)};
+  double farthest = 0.0;
   for (std::size_t i = 0; i < motion.instants.size(); ++i) {
     run.go_on();
     const double dt = i == 0 ? 0.0 : motion.instants[i].time - motion.instants[i - 1].time;
     scene.step(motion.instants[i].tools, dt);
     const std::vector<double> now = strain_difficulty(*body, scene.state().positions, young);
     for (std::size_t t = 0; t < now.size(); ++t) pilot.difficulty[t] += now[t];
+    for (std::size_t v = 0; v < body->rest.size(); ++v) {
+      farthest =
+          std::max(farthest, (scene.state().positions[v] - body->rest[v].cast<double>()).norm());
+    }
   }
-  if (*std::max_element(pilot.difficulty.begin(), pilot.difficulty.end()) > 0.0) return pilot;
+  if (farthest > kRounding * std::cbrt(mesh.statistics.volume)) return pilot;
   throw InputError(ErrorCode::kScene,
                    "scene: " + motion.scene.name + " strains nothing on a mesh of " +
                        std::to_string(body->tets.size()) + " tets; does its tool touch the organ?");

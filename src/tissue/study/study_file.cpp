@@ -72,7 +72,8 @@ class StudyFile {
     if (reader.has("paths")) {
       for (const YamlReader& path : reader.at("paths").members()) {
         const std::string file = in_folder(path.word());
-        paths[tool_named(path, scene)] = read_poses(file);
+        const std::size_t tool = tool_named(path, scene);
+        paths[tool] = read_poses(file);
         problem.source += text_of_file(file, "path");
       }
     }

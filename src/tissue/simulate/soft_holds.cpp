@@ -1,4 +1,4 @@
-#include "pads.h"
+#include "soft_holds.h"
 
 #include <algorithm>
 
@@ -11,18 +11,35 @@ double share_at(double distance, double radius) {
   return (1.0 - part * part) * (1.0 - part * part);
 }
 
+bool is_pad(const ToolDescription& tool) { return tool.shape == ToolShape::kPad; }
+
 }  // namespace
 
-Pads::Pads(const std::vector<ToolDescription>& tools, std::size_t first_holder,
-           SurfaceSprings& springs)
-    : tools_(tools), first_holder_(first_holder), springs_(springs), pads_(tools.size()) {}
+SoftHolds::SoftHolds(const SceneDescription& scene, const FiniteElements& elements,
+                     const Body& body)
+    : tools_(scene.tools),
+      first_tool_(scene.anchors.size()),
+      springs_(elements, body),
+      pads_(scene.tools.size()) {
+  for (const Bed& bed : beds_of(body, scene.anchors)) {
+    springs_.attach(bed.anchor, rest_positions(elements),
+                    [&](const Vec3& place) { return bed.reaches(place) ? bed.stiffness : 0.0; });
+  }
+}
 
-bool Pads::update(const ToolPoses& tools, const Eigen::VectorXd& positions) {
+bool SoftHolds::are_in(const SceneDescription& scene) {
+  return std::any_of(scene.tools.begin(), scene.tools.end(), is_pad) ||
+         std::any_of(scene.anchors.begin(), scene.anchors.end(), is_bed);
+}
+
+bool SoftHolds::any_pad() const { return std::any_of(tools_.begin(), tools_.end(), is_pad); }
+
+bool SoftHolds::update(const ToolPoses& tools, const Eigen::VectorXd& positions) {
   bool changed = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const ToolDescription& tool = tools_[i];
-    if (tool.shape != ToolShape::kPad) continue;
-    const std::size_t holder = first_holder_ + i;
+    if (!is_pad(tool)) continue;
+    const std::size_t holder = first_tool_ + i;
     switch (pads_[i].jaw.act(tools[i], !pads_[i].offsets.empty())) {
       case Jaw::Act::kNothing: continue;
       case Jaw::Act::kRelease:
@@ -44,18 +61,22 @@ bool Pads::update(const ToolPoses& tools, const Eigen::VectorXd& positions) {
   return changed;
 }
 
-void Pads::release() {
-  for (std::size_t i = 0; i < pads_.size(); ++i) springs_.detach(first_holder_ + i);
+void SoftHolds::release() {
+  for (std::size_t i = 0; i < pads_.size(); ++i) springs_.detach(first_tool_ + i);
   pads_.assign(tools_.size(), {});
 }
 
-Eigen::VectorXd Pads::motion_to(const ToolPoses& tools) const {
+void SoftHolds::add_forces(const Eigen::VectorXd& positions, std::vector<Vec3>& forces) const {
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += springs_.force(i, positions);
+}
+
+Eigen::VectorXd SoftHolds::motion_to(const ToolPoses& tools) const {
   const std::vector<SurfaceSprings::Spring>& springs = springs_.springs();
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * springs.size()));
   std::vector<std::size_t> next(tools_.size(), 0);
   for (std::size_t i = 0; i < springs.size(); ++i) {
-    if (springs[i].holder < first_holder_) continue;
-    const std::size_t tool = springs[i].holder - first_holder_;
+    if (springs[i].holder < first_tool_) continue;
+    const std::size_t tool = springs[i].holder - first_tool_;
     const Vec3& offset = pads_[tool].offsets[next[tool]++];
     if (!tools[tool]) continue;
     const Vec3 place = tools[tool]->position + tools[tool]->orientation.normalized() * offset;
