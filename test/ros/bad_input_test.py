@@ -277,6 +277,29 @@ class BadInput(unittest.TestCase):
         self.assertEqual(load("broken.vtu").result.code, Result.E_FILE)
         self.assertEqual(rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid, good.uuid)
 
+    def test_5d_meshes_are_sized_by_the_strain_of_a_scene_below_the_folder(self):
+        good = self.good_mesh()
+        folder = rospy.get_param("mesher_node/folder")
+        with open(os.path.join(folder, "push.yaml"), "w") as file:
+            file.write("model: linear\nanchors: [{plane: {axis: z, below: 30%, stiffness: 1e6}}]\n"
+                       "tools: [{name: finger, shape: {pad: {radius: 0.006}}, mode: grasp}]\n")
+        with open(os.path.join(folder, "push.csv"), "w") as file:
+            for i, z in enumerate((0.0275, 0.0265)):
+                file.write("%d,0.0155,0.0155,%g,0,0,0,1\n" % (i, z))
+        strain = dict(method="strain", spacing=0.0, target_tetrahedra=3000, level_sections=3)
+        for code, sentence, fields in (
+                (Result.E_PARAM, "scene_file: is empty", {}),
+                (Result.E_PATH, "push.yaml", dict(scene_file="../push.yaml")),
+                (Result.E_PARAM, "no tool 'hand'", dict(scene_file="push.yaml", path_files=["hand=push.csv"])),
+                (Result.E_SCENE, "strains nothing", dict(scene_file="push.yaml"))):
+            result = self.build(request(**strain, **fields)).result
+            self.assertEqual(result.code, code, result.message)
+            self.assertIn(sentence, result.message)
+        answer = self.build(request(**strain, scene_file="push.yaml", path_files=["finger=push.csv"]))
+        self.assertEqual(answer.result.code, Result.OK, answer.result.message)
+        self.assertAlmostEqual(answer.statistics.tetrahedra, 3000, delta=60)
+        self.assertEqual(self.good_mesh().uuid, good.uuid)
+
     def send_pose(self, stamp, place=(CENTRE, CENTRE, 100.0), frame="patient", w=1.0):
         pose = PoseStamped()
         pose.header.stamp = rospy.Time.from_sec(stamp)
