@@ -28,7 +28,7 @@ std::string text_of(const std::string& path) {
 // scene's effects.
 std::string small_study() {
   const std::string path = temporary("tissue_small_study.yaml");
-  std::ofstream(path) << "volume: " << kRoot << "/data/ch2bet.nii.gz\nsmoothing: 4\n"
+  std::ofstream(path) << "volume: " << kRoot << "/data/ch2bet.nii.gz\n"
                       << "problems: {palpate: {scene: " << kRoot << "/config/scenes/palpate.yaml,"
                       << " paths: {tool: " << kRoot << "/config/paths/palpate_tumour.csv},"
                       << " tumours: [[0.002, -0.020, 0.045, 0.012, 255]]},"
@@ -36,7 +36,7 @@ std::string small_study() {
                       << " tumours: [[0.002, -0.020, 0.045, 0.012, 255]]}}\n"
                       << "points: 2000\n"
                       << "meshes: {uniform: {method: uniform}, strain: {method: strain}}\n"
-                      << "reference: {mesh: uniform, tetrahedra: 8000}\n"
+                      << "reference: {mesh: uniform, tetrahedra: 4000}\n"
                       << "rows:\n"
                       << "  - {problems: [palpate], tetrahedra: [1000]}\n"
                       << "  - {problems: [tilt], meshes: [uniform], tetrahedra: [300],"
@@ -101,12 +101,13 @@ TEST(AccuracyStudy, AKilledStudyResumesWithTheRowsThatItHas) {
 TEST(AccuracyStudy, ARowWithoutMemoryIsARowWithItsReason) {
   const std::string folder = temporary("tissue_study_starved");
   std::filesystem::remove_all(folder);
-  // Enough to start with, too little for a volume, in kilobytes of address space.
-  const Outcome outcome = run_program("ulimit -v 150000; " + std::string(ACCURACY_STUDY),
+  // Address space in kilobytes: enough to start with, too little to factorise. (OpenBLAS would ask
+  // for its buffers for ever.)
+  const Outcome outcome = run_program("ulimit -v 250000; " + std::string(ACCURACY_STUDY),
                                       small_study() + " -o " + folder);
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("7 of 7 rows"), std::string::npos) << outcome.output;
-  EXPECT_NE(outcome.output.find("7 of them failed"), std::string::npos) << outcome.output;
+  EXPECT_NE(text_of(folder + "/results.csv").find("E_NOMEM: out of memory"), std::string::npos);
 }
 
 TEST(AccuracyStudy, ListsItsRowsAndRefusesWhatItDoesNotKnow) {
@@ -115,7 +116,7 @@ TEST(AccuracyStudy, ListsItsRowsAndRefusesWhatItDoesNotKnow) {
   const Outcome list = accuracy_study(study + " -o " + folder + " --list");
   EXPECT_EQ(list.code, 0);
   EXPECT_EQ(list.output.substr(0, list.output.find('\n')),
-            "0\treference: palpate, uniform, 8000 tets, neo_hookean of order 2");
+            "0\treference: palpate, uniform, 4000 tets, neo_hookean of order 2");
   EXPECT_FALSE(std::filesystem::exists(folder));
   EXPECT_EQ(accuracy_study(study + " -o " + folder + " --row 7").output,
             "accuracy_study: E_PARAM: --row: 7 is not below 7\n");

@@ -15,6 +15,7 @@ class LinearSolver {
   virtual const char* name() const = 0;
   /// Coordinates for which `fixed` is set, three flags for each node, have no equation; `shift` is
   /// added to the diagonal. False if A is seen not to be positive definite to working precision.
+  /// Throws std::bad_alloc where the machine has too little memory for the factor.
   virtual bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
                        double shift) = 0;
   /// All coordinates, of which fixed ones are not looked at and answered with zero. False if no x

@@ -1,9 +1,13 @@
 #include "tissue/simulate/linear_solver.h"
 
+#include "tissue/base/machine_memory.h"
+
 #include <Eigen/SparseCholesky>
 #ifdef TISSUE_WITH_CHOLMOD
 #include <Eigen/CholmodSupport>
 #endif
+
+#include <new>
 
 namespace tissue {
 namespace {
@@ -33,6 +37,7 @@ class Direct : public LinearSolver {
     if (shift > 0.0) lower.diagonal().array() += shift;
     if (fixed != fixed_ || lower.nonZeros() != entries_) {
       decomposition_.analyzePattern(lower);
+      require_memory();
       entries_ = lower.nonZeros();
       fixed_ = fixed;
     }
@@ -57,6 +62,17 @@ class Direct : public LinearSolver {
  private:
   static constexpr bool kIsCholmod =
       !std::is_same_v<Decomposition, Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>;
+
+  // OpenBLAS, where it gets no memory for its buffers, asks again for ever.
+  void require_memory() {
+#ifdef TISSUE_WITH_CHOLMOD
+    if constexpr (kIsCholmod) {
+      constexpr double kBuffers = 256e6;
+      const double factor = sizeof(double) * decomposition_.cholmod().lnz;
+      if (factor + kBuffers > static_cast<double>(available_memory())) throw std::bad_alloc();
+    }
+#endif
+  }
 
   bool is_definite() const {
     if constexpr (!kIsCholmod) {
