@@ -68,8 +68,8 @@ struct Bed {
 std::vector<Bed> beds_of(const Body& body, const std::vector<Anchor>& anchors);
 
 /// Throws InputError E_UNCONSTRAINED unless every connected part of the body has three held
-/// vertices that do not lie on a line (of the surface, where it lies on a bed): without them it has no equilibrium of its own. The sentence
-/// lists the parts.
+/// vertices that do not lie on a line (of the surface, where it lies on a bed): without them it has
+/// no equilibrium of its own. The sentence lists the parts.
 void require_held(const Body& body, const std::vector<int>& holders,
                   const std::vector<Bed>& beds = {});
 

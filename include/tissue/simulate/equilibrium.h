@@ -57,6 +57,14 @@ class Equilibrium {
   /// That motion of all nodes; `motion` alone where the Hessian cannot be factorised.
   Eigen::VectorXd response(const Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
 
+  /// The same for several motions at once, where dE/dx changes by `pulls` besides; `forces` become
+  /// the changes of dE/dx that the answers then leave to what is held. Empty where the Hessian
+  /// cannot be solved with.
+  std::vector<Eigen::VectorXd> responses(const Eigen::VectorXd& positions,
+                                         const std::vector<Eigen::VectorXd>& motions,
+                                         const std::vector<Eigen::VectorXd>& pulls,
+                                         std::vector<Eigen::VectorXd>& forces);
+
   /// The method by which linear systems were solved last.
   const char* solver_name() const { return active_->name(); }
 

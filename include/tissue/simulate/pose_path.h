@@ -20,9 +20,9 @@ struct StampedPose {
 /// must not fall.
 std::vector<StampedPose> read_poses(const std::string& path);
 
-/// One path for each tool of the scene, from files named `FILE` (for the first tool) or `TOOL=FILE`;
-/// empty for a tool without one. `locate` turns the name of a file into its path. Throws as
-/// read_poses(), and E_PARAM for a tool that the scene has not or that has two paths.
+/// One path for each tool of the scene, from files named `FILE` (for the first tool) or
+/// `TOOL=FILE`; empty for a tool without one. `locate` turns the name of a file into its path.
+/// Throws as read_poses(), and E_PARAM for a tool that the scene has not or that has two paths.
 std::vector<std::vector<StampedPose>> read_paths(
     const SceneDescription& scene, const std::vector<std::string>& files,
     const std::function<std::string(const std::string&)>& locate = {});

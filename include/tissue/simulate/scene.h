@@ -49,6 +49,31 @@ struct TetStrain {
   double det_f = 0.0;
 };
 
+/// A force [N] and a torque about a tool's centre [N m].
+struct Wrench {
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+
+  void add(const Vec3& at_offset, const Vec3& force_there) {
+    force += force_there;
+    torque += at_offset.cross(force_there);
+  }
+  Wrench& operator+=(const Wrench& other) {
+    force += other.force;
+    torque += other.torque;
+    return *this;
+  }
+};
+
+/// What a tool feels: a linear model of the tissue for a loop that is faster than steps.
+struct ToolFeedback {
+  /// Of the tissue on the tool.
+  Wrench wrench;
+  /// How far the tool goes for each newton more with which it is moved, the tissue following [m/N],
+  /// to a few per cent; zero where that is not known.
+  Mat3 compliance = Mat3::Zero();
+};
+
 /// A body that moves as a scene says: one model and the effects that the scene names.
 class Scene {
  public:
@@ -83,6 +108,9 @@ class Scene {
   std::vector<Vec3> places(const std::vector<TetPlace>& material) const;
   /// Force of the tissue on each tool [N]; nothing for a model that knows none.
   std::vector<std::optional<Vec3>> tool_forces() const;
+  /// One for each tool with the effect `force_feedback`, else none at all; nothing for a tool that
+  /// holds nothing.
+  std::vector<std::optional<ToolFeedback>> tool_feedback() const;
   /// Force of the tissue on each anchor [N]; empty for a model that knows none.
   std::vector<Vec3> anchor_forces() const;
   /// For each tet; empty for a model that knows no stress.

@@ -17,7 +17,15 @@ namespace tissue {
 enum class Model { kClosedForm, kMassSpring, kLinear, kCorotational, kNeoHookean };
 
 /// What a scene may add to a model.
-enum class Effect { kDensityResponse, kRecovery, kFoldGuard, kGravity, kInertia, kDamping };
+enum class Effect {
+  kDensityResponse,
+  kRecovery,
+  kFoldGuard,
+  kGravity,
+  kInertia,
+  kDamping,
+  kForceFeedback
+};
 
 const char* name(Model model);
 const char* name(Effect effect);

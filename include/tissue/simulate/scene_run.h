@@ -16,12 +16,13 @@ struct RunRecord {
   StepReport last;
 };
 
-/// Lets a scene go through the instants, in order; `after_step`, if there is any, hears how many are
-/// done.
+/// Lets a scene go through the instants, in order; `after_step`, if there is any, hears how many
+/// are done.
 RunRecord run_along(Scene& scene, const std::vector<Instant>& instants,
                     const std::function<void(std::size_t done)>& after_step = {});
 
-/// The value below which this part of the others lie: 0.5 is the median. `values` must not be empty.
+/// The value below which this part of the others lie: 0.5 is the median. `values` must not be
+/// empty.
 double percentile(std::vector<double> values, double part);
 
 }  // namespace tissue

@@ -26,6 +26,7 @@ class DeformationModel {
   }
   /// What closed_form has not, because it solves no equation.
   virtual std::vector<std::optional<Vec3>> tool_forces() const { return {}; }
+  virtual std::vector<std::optional<ToolFeedback>> tool_feedback() const { return {}; }
   virtual std::vector<Vec3> anchor_forces() const { return {}; }
   virtual std::vector<TetStrain> strains() const { return {}; }
 };

@@ -159,6 +159,24 @@ Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
   return motion + step;
 }
 
+std::vector<Eigen::VectorXd> Equilibrium::responses(const Eigen::VectorXd& positions,
+                                                    const std::vector<Eigen::VectorXd>& motions,
+                                                    const std::vector<Eigen::VectorXd>& pulls,
+                                                    std::vector<Eigen::VectorXd>& forces) {
+  prepare(positions, nullptr);
+  std::vector<Eigen::VectorXd> answers;
+  forces.clear();
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    Eigen::VectorXd pull = pulls[k], step;
+    if (is_prepared_) active_->multiply_add(motions[k], pull);
+    if (!is_prepared_ || !solve_for(positions, pull, step)) return {};
+    answers.push_back(motions[k] + step);
+    forces.push_back(pull);
+    active_->multiply_add(step, forces.back());
+  }
+  return answers;
+}
+
 EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
                                                const Eigen::VectorXd& motion) {
   EquilibriumReport report;

@@ -112,6 +112,23 @@ void HeldNodes::place(const ToolPoses& tools, std::vector<Vec3>& vertices) const
   }
 }
 
+Wrench HeldNodes::wrench(std::size_t tool, const Eigen::VectorXd& gradient,
+                         const Eigen::VectorXd& positions, const Vec3& centre) const {
+  Wrench sum;
+  const auto add = [&](std::size_t i, double share) {
+    sum.add(node(positions, i) - centre, -share * node(gradient, i));
+  };
+  for (const std::uint32_t v : grips_[tool].vertices()) add(v, 1.0);
+  const int holder = static_cast<int>(anchor_count_ + tool);
+  for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
+    if (!is_held_midpoint(i)) continue;
+    for (const std::uint32_t end : elements_.midpoints()[i]) {
+      if (holders_[end] == holder) add(holders_.size() + i, 0.5);
+    }
+  }
+  return sum;
+}
+
 std::vector<Vec3> HeldNodes::forces(const Eigen::VectorXd& gradient) const {
   std::vector<Vec3> result(anchor_count_ + grips_.size(), Vec3::Zero());
   for (std::size_t v = 0; v < holders_.size(); ++v) {

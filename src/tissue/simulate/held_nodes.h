@@ -20,6 +20,7 @@ class HeldNodes {
   /// Tools hold nothing.
   void release();
   bool any_grip() const;
+  bool holds(std::size_t tool) const { return !grips_[tool].vertices().empty(); }
 
   /// For each node whether it is held.
   std::vector<std::uint8_t> flags() const;
@@ -35,6 +36,9 @@ class HeldNodes {
   /// Minus the sum of dE/dx over what each holder holds, anchors first, then tools: the tissue's
   /// force on it [N].
   std::vector<Vec3> forces(const Eigen::VectorXd& gradient) const;
+  /// The same for one tool, with its torque about `centre`, where the nodes are at `positions`.
+  Wrench wrench(std::size_t tool, const Eigen::VectorXd& gradient, const Eigen::VectorXd& positions,
+                const Vec3& centre) const;
 
  private:
   bool is_held_midpoint(std::size_t midpoint) const;

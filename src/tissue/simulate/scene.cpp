@@ -87,6 +87,9 @@ std::vector<std::optional<Vec3>> Scene::tool_forces() const {
   forces.resize(description().tools.size());
   return forces;
 }
+std::vector<std::optional<ToolFeedback>> Scene::tool_feedback() const {
+  return implementation_->model->tool_feedback();
+}
 std::vector<Vec3> Scene::anchor_forces() const { return implementation_->model->anchor_forces(); }
 std::vector<TetStrain> Scene::strains() const { return implementation_->model->strains(); }
 

@@ -23,6 +23,7 @@ const char* name(Effect effect) {
     case Effect::kGravity: return "gravity";
     case Effect::kInertia: return "inertia";
     case Effect::kDamping: return "damping";
+    case Effect::kForceFeedback: return "force_feedback";
   }
   return "";
 }
@@ -34,9 +35,9 @@ const std::vector<Model>& all_models() {
 }
 
 const std::vector<Effect>& all_effects() {
-  static const std::vector<Effect> effects = {Effect::kDensityResponse, Effect::kRecovery,
-                                              Effect::kFoldGuard,       Effect::kGravity,
-                                              Effect::kInertia,         Effect::kDamping};
+  static const std::vector<Effect> effects = {
+      Effect::kDensityResponse, Effect::kRecovery, Effect::kFoldGuard,    Effect::kGravity,
+      Effect::kInertia,         Effect::kDamping,  Effect::kForceFeedback};
   return effects;
 }
 
@@ -47,7 +48,8 @@ bool can_have(Model model, Effect effect) {
     case Effect::kFoldGuard: return model == Model::kClosedForm;
     case Effect::kGravity:
     case Effect::kInertia:
-    case Effect::kDamping: return model != Model::kClosedForm;
+    case Effect::kDamping:
+    case Effect::kForceFeedback: return model != Model::kClosedForm;
   }
   return false;
 }

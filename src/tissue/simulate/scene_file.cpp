@@ -152,6 +152,7 @@ void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::
       parameters({});
       scene.fold_guard = true;
       break;
+    case Effect::kForceFeedback: parameters({}); break;
     case Effect::kGravity:
       parameters({"vector"});
       if (!bare && entry.members()[0].has("vector")) {

@@ -66,6 +66,35 @@ void SoftHolds::release() {
   pads_.assign(tools_.size(), {});
 }
 
+Wrench SoftHolds::wrench(std::size_t tool, const Eigen::VectorXd& positions,
+                         const Vec3& centre) const {
+  Wrench sum;
+  for (const SurfaceSprings::Spring& spring : springs_.springs()) {
+    if (spring.holder != first_tool_ + tool) continue;
+    const Vec3 place = positions.segment<3>(3 * Eigen::Index{spring.node});
+    sum.add(spring.target - centre, spring.stiffness * (place - spring.target));
+  }
+  return sum;
+}
+
+void SoftHolds::add_pull(std::size_t tool, const Vec3& direction, Eigen::VectorXd& gradient) const {
+  for (const SurfaceSprings::Spring& spring : springs_.springs()) {
+    if (spring.holder != first_tool_ + tool) continue;
+    gradient.segment<3>(3 * Eigen::Index{spring.node}) -= spring.stiffness * direction;
+  }
+}
+
+Vec3 SoftHolds::force_change(std::size_t tool, const Vec3& direction,
+                             const Eigen::VectorXd& response) const {
+  Vec3 sum = Vec3::Zero();
+  for (const SurfaceSprings::Spring& spring : springs_.springs()) {
+    if (spring.holder != first_tool_ + tool) continue;
+    const Vec3 moved = response.segment<3>(3 * Eigen::Index{spring.node});
+    sum += spring.stiffness * (moved - direction);
+  }
+  return sum;
+}
+
 void SoftHolds::add_forces(const Eigen::VectorXd& positions, std::vector<Vec3>& forces) const {
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += springs_.force(i, positions);
 }

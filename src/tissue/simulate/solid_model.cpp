@@ -1,13 +1,13 @@
 #include "deformation_model.h"
 #include "dynamics.h"
+#include "force_feedback.h"
 #include "held_nodes.h"
 #include "soft_holds.h"
+#include "solver_choice.h"
 #include "tet_strains.h"
 #include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
 #include "tissue/simulate/gravity.h"
-#include "tissue/simulate/multigrid_system.h"
-#include "tissue/simulate/quadratic_system.h"
 #include "tissue/simulate/spring_energy.h"
 
 #include <algorithm>
@@ -18,14 +18,6 @@ namespace {
 
 // A step that finds no equilibrium is tried again in halves, so often.
 constexpr int kMaxHalvings = 4;
-
-Constitution constitution_of(Model model) {
-  switch (model) {
-    case Model::kLinear: return Constitution::kLinear;
-    case Model::kCorotational: return Constitution::kCorotational;
-    default: return Constitution::kNeoHookean;
-  }
-}
 
 Run run_on(int threads) {
   Run run;
@@ -62,36 +54,36 @@ class SolidModel : public DeformationModel {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
       for (const Energy* energy : dynamics_->energies()) energies.push_back(energy);
     }
-    equilibrium_ = make_equilibrium(std::move(energies), run_on(threads));
+    equilibrium_ = equilibrium_for(scene, elements_, std::move(energies), run_on(threads));
+    if (EffectCost* const cost = costs.of(Effect::kForceFeedback)) {
+      feedback_.emplace(held_, soft_ ? &*soft_ : nullptr, *equilibrium_, cost);
+    }
     reset();
   }
 
   StepReport step(const ToolPoses& tools, double dt) override {
     bool regrip = held_.update(tools, state_.positions);
     if (soft_) regrip = soft_->update(tools, positions_now()) || regrip;
+    const bool is_linear = scene_.model == Model::kLinear && !dynamics_;
     if (dynamics_) {
       if (regrip) equilibrium_->hold(held_.flags());
       if (soft_) soft_->move(soft_->motion_to(tools));
       if (dt > 0.0) swing(tools, dt);
-      return report_;
-    }
-    if (scene_.model == Model::kLinear && !(soft_ && soft_->any_pad()) && !regrip && settled_) {
+    } else if (is_linear && !(soft_ && soft_->any_pad()) && !regrip && settled_) {
       superpose(tools);
-      return report_;
+    } else {
+      settle(tools, regrip);
     }
-    positions_ = positions_now();
-    response_.reset();
-    if (regrip) equilibrium_->hold(held_.flags());
-    Motion motion = {held_.motion_to(tools, positions_), {}};
-    if (soft_) motion.pads = soft_->motion_to(tools);
-    if (regrip || !settled_ || !motion.is_zero()) move(motion);
-    last_tools_ = tools;
+    if (feedback_ && (!dynamics_ || dt > 0.0)) {
+      feedback_->update(tools, positions_now(), is_linear && !regrip);
+    }
     return report_;
   }
 
   void reset() override {
     held_.release();
     if (soft_) soft_->release();
+    if (feedback_) feedback_->reset();
     equilibrium_->hold(held_.flags());
     response_.reset();
     positions_ = rest_;
@@ -121,6 +113,10 @@ class SolidModel : public DeformationModel {
   std::vector<std::optional<Vec3>> tool_forces() const override {
     const std::vector<Vec3> all = forces_on_holders();
     return {all.begin() + static_cast<std::ptrdiff_t>(scene_.anchors.size()), all.end()};
+  }
+
+  std::vector<std::optional<ToolFeedback>> tool_feedback() const override {
+    return feedback_ ? feedback_->tools() : std::vector<std::optional<ToolFeedback>>();
   }
 
   std::vector<Vec3> anchor_forces() const override {
@@ -158,27 +154,6 @@ class SolidModel : public DeformationModel {
     if (cost != nullptr) cost->bytes = bytes;
   }
 
-  // One factorisation that serves all steps, or for each step what is cheapest.
-  std::unique_ptr<Equilibrium> make_equilibrium(std::vector<const Energy*> energies,
-                                                const Run& run) const {
-    constexpr std::size_t kFewNodes = 500;
-    const LinearSystemMaker direct = [this] { return direct_system(elements_); };
-    const bool is_linear = scene_.model == Model::kLinear;
-    std::unique_ptr<LinearSystem> iterative;
-    if (elements_.node_count() >= kFewNodes && (!is_linear || dynamics_)) {
-      // What Newton's iterations need; their own tolerance may be finer.
-      constexpr double kTolerance = 1e-3;
-      iterative = elements_.order() == 1
-                      ? multigrid_system(elements_, kTolerance, run)
-                      : quadratic_system(elements_, constitution_of(scene_.model), kTolerance, run);
-    }
-    if (!iterative) {
-      return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr, is_linear);
-    }
-    return std::make_unique<Equilibrium>(std::move(energies), std::move(iterative), direct,
-                                         is_linear);
-  }
-
   static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
     std::vector<int> holders = anchors_of_vertices(body, scene.anchors);
     // What has inertia may fly.
@@ -197,6 +172,17 @@ class SolidModel : public DeformationModel {
     std::vector<Vec3> forces = held_.forces(equilibrium_->gradient(positions));
     if (soft_) soft_->add_forces(positions, forces);
     return forces;
+  }
+
+  // Finds the equilibrium with the tools where they are.
+  void settle(const ToolPoses& tools, bool regrip) {
+    positions_ = positions_now();
+    response_.reset();
+    if (regrip) equilibrium_->hold(held_.flags());
+    Motion motion = {held_.motion_to(tools, positions_), {}};
+    if (soft_) motion.pads = soft_->motion_to(tools);
+    if (regrip || !settled_ || !motion.is_zero()) move(motion);
+    last_tools_ = tools;
   }
 
   // Small strain: where the tools go decides where everything goes, and nothing is solved.
@@ -284,6 +270,7 @@ class SolidModel : public DeformationModel {
   Eigen::VectorXd rest_, positions_;
   State state_;
   std::unique_ptr<Equilibrium> equilibrium_;
+  std::optional<ForceFeedback> feedback_;
   // For small strain, while what the tools hold stays the same.
   std::optional<ToolResponse> response_;
   ToolPoses last_tools_;

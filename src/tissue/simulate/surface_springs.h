@@ -8,8 +8,8 @@
 namespace tissue {
 
 /// Springs from the surface to holders, as stiff for each unit of area as somebody says: tools by
-/// soft pads, anchors by soft beds. Stiffness is integrated over the surface, so that what it does to
-/// a body hardly depends on the mesh.
+/// soft pads, anchors by soft beds. Stiffness is integrated over the surface, so that what it does
+/// to a body hardly depends on the mesh.
 class SurfaceSprings : public Energy {
  public:
   struct Spring {

@@ -44,7 +44,8 @@ SceneDescription leave_out(SceneDescription scene, Effect effect, const Body& bo
     case Effect::kFoldGuard: scene.fold_guard = false; break;
     case Effect::kInertia: erase(scene.effects, Effect::kDamping); break;
     case Effect::kGravity:
-    case Effect::kDamping: break;
+    case Effect::kDamping:
+    case Effect::kForceFeedback: break;
   }
   return scene;
 }
