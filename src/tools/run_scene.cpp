@@ -60,6 +60,21 @@ Arguments arguments_from(const po::variables_map& given) {
 
 nlohmann::json triple(const tissue::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
+// What tools feel, by their names; nothing without the effect force_feedback.
+nlohmann::json feedback_of(const tissue::Scene& scene) {
+  nlohmann::json result = nlohmann::json::object();
+  const auto feedback = scene.tool_feedback();
+  for (std::size_t i = 0; i < feedback.size(); ++i) {
+    if (!feedback[i]) continue;
+    const tissue::Mat3& c = feedback[i]->compliance;
+    result[scene.description().tools[i].name] = {
+        {"force_n", triple(feedback[i]->wrench.force)},
+        {"torque_nm", triple(feedback[i]->wrench.torque)},
+        {"compliance_m_per_n", {triple(c.row(0)), triple(c.row(1)), triple(c.row(2))}}};
+  }
+  return result;
+}
+
 nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& record) {
   const tissue::DeformationQuality quality =
       tissue::deformation_quality(scene.body(), scene.state());
@@ -101,6 +116,7 @@ nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& reco
           {"inverted", quality.inverted},
           {"probes", probes},
           {"reaction_n", reactions},
+          {"feedback", feedback_of(scene)},
           {"flags", flags}};
 }
 

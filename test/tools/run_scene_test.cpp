@@ -64,6 +64,26 @@ TEST(RunScene, EveryShippedSceneOfASolidKeepsTheShippedBrainWhole) {
   }
 }
 
+TEST(RunScene, WhatToolsFeelIsAmongTheFiguresOfScenesThatNameIt) {
+  std::string text;
+  std::getline(std::ifstream(kRoot + "/config/scenes/palpate.yaml"), text, '\0');
+  const std::string effects = "[density_response";
+  text.replace(text.find(effects), effects.size(), effects + ", force_feedback");
+  const std::string scene = temporary("tissue_felt.yaml"), json = temporary("tissue_felt.json");
+  std::ofstream(scene) << text;
+  const Outcome outcome = run_scene(scene + " --mesh " + brain() + " --path " + kRoot +
+                                    "/config/paths/palpate_tumour.csv -o " +
+                                    temporary("tissue_felt.vtu") + " --stats " + json);
+  ASSERT_EQ(outcome.code, 0) << outcome.output;
+  const nlohmann::json stats = read_json(json), felt = stats["feedback"]["tool"];
+  // Summed up in another order.
+  EXPECT_NEAR(felt["force_n"][2], stats["reaction_n"]["tool"][2], 1e-12);
+  EXPECT_GT(felt["compliance_m_per_n"][2][2], 1e-3);
+  EXPECT_EQ(stats["effects"][1]["name"], "force_feedback");
+  EXPECT_GT(stats["effects"][1]["seconds"], 0.0);
+  EXPECT_EQ(figures_of("palpate.yaml", "palpate_tumour.csv")["feedback"], nlohmann::json::object());
+}
+
 TEST(RunScene, TheResultHasTheInputsPointsAndWhatTheyDid) {
   const std::string vtu = temporary("tissue_run_scene_fields.vtu");
   const Outcome outcome =
