@@ -103,8 +103,9 @@ TEST(AccuracyStudy, ARowWithoutMemoryIsARowWithItsReason) {
   std::filesystem::remove_all(folder);
   // Address space in kilobytes: enough to start with, too little to factorise. (OpenBLAS would ask
   // for its buffers for ever.)
-  const Outcome outcome = run_program("ulimit -v 250000; " + std::string(ACCURACY_STUDY),
-                                      small_study() + " -o " + folder);
+  const Outcome outcome =
+      run_program("ulimit -v 250000; timeout 120 " + std::string(ACCURACY_STUDY),
+                  small_study() + " -o " + folder);
   EXPECT_EQ(outcome.code, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("7 of 7 rows"), std::string::npos) << outcome.output;
   EXPECT_NE(text_of(folder + "/results.csv").find("E_NOMEM: out of memory"), std::string::npos);
