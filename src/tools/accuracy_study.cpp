@@ -75,7 +75,7 @@ void merge(const tissue::Study& study, const Places& places) {
     failed += result && !result->failure.empty();
   }
   fs::create_directories(places.folder);
-  std::ofstream(path("results.csv")) << study_table(study, results);
+  tissue_tools::write_text("-o", path("results.csv"), study_table(study, results));
   const std::optional<double> noise = tissue::noise(study, results);
   tissue_tools::write_text(
       "-o", path("study.json"),

@@ -34,74 +34,71 @@ ToolPose at(const Vec3& motion, double angle = 0.0) {
           Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3(1.0, 2.0, -1.0).normalized()))};
 }
 
-const char* const kModels[] = {"mass_spring", "linear", "corotational", "neo_hookean"};
-
-TEST(ForceFeedback, ForceAndTorqueAreTheEnergysDerivativesAlongTheToolsMotion) {
-  for (const char* model : kModels) {
+// Calls body(model, order, shape of the tool) for all that there are.
+template <class Body>
+void for_each_case(const Body& body) {
+  for (const char* model : {"mass_spring", "linear", "corotational", "neo_hookean"}) {
     for (const int order : {1, 2}) {
-      for (const char* shape : {kSphere, kPad}) {
-        if (order == 2 && std::string(model) == "mass_spring") continue;
-        Scene scene(scene_of(model, order, shape), block());
-        scene.step(at(Vec3::Zero()), 0.0);
-        const auto energy = [&](const Vec3& motion, double angle) {
-          const StepReport report = scene.step(at(motion, angle), 0.01);
-          EXPECT_FALSE(report.not_converged) << model << order;
-          return *report.energy;
-        };
-        constexpr double kStep = 1e-5, kTurn = 1e-4;
-        Vec3 slope;
-        for (int axis = 0; axis < 3; ++axis) {
-          const Vec3 aside = kStep * Vec3::Unit(axis);
-          slope[axis] =
-              (energy(kMotion + aside, 0.0) - energy(kMotion - aside, 0.0)) / (2.0 * kStep);
-        }
-        const double turning = (energy(kMotion, kTurn) - energy(kMotion, -kTurn)) / (2.0 * kTurn);
-        energy(kMotion, 0.0);
-        ASSERT_TRUE(scene.tool_feedback()[0]);
-        const Wrench felt = scene.tool_feedback()[0]->wrench;
-        EXPECT_LE((felt.force + slope).norm(), 1e-4 * slope.norm()) << model << order << shape;
-        EXPECT_NEAR(felt.torque.dot(Vec3(1.0, 2.0, -1.0).normalized()), -turning,
-                    1e-3 * felt.torque.norm())
-            << model << order << shape;
-        // What the anchors bear.
-        EXPECT_LE((felt.force + scene.anchor_forces()[0]).norm(), 1e-6 * felt.force.norm())
-            << model << order << shape;
-        EXPECT_LE((felt.force - *scene.tool_forces()[0]).norm(), 1e-12 * felt.force.norm());
-      }
+      if (order == 2 && std::string(model) == "mass_spring") continue;
+      for (const char* shape : {kSphere, kPad}) body(model, order, shape);
     }
   }
 }
 
-TEST(ForceFeedback, ComplianceIsAFiniteDifferenceOfTheStep) {
-  for (const char* model : kModels) {
-    for (const int order : {1, 2}) {
-      for (const char* shape : {kSphere, kPad}) {
-        if (order == 2 && std::string(model) == "mass_spring") continue;
-        Scene scene(scene_of(model, order, shape), block());
-        scene.step(at(Vec3::Zero()), 0.0);
-        scene.step(at(kMotion), 0.01);
-        const Mat3 compliance = scene.tool_feedback()[0]->compliance;
-        constexpr double kStep = 2e-5;
-        Mat3 stiffness;
-        for (int axis = 0; axis < 3; ++axis) {
-          const Vec3 aside = kStep * Vec3::Unit(axis);
-          scene.step(at(kMotion + aside), 0.01);
-          stiffness.col(axis) = -*scene.tool_forces()[0];
-          scene.step(at(kMotion - aside), 0.01);
-          stiffness.col(axis) += *scene.tool_forces()[0];
-        }
-        stiffness /= 2.0 * kStep;
-        // Iterations solve to a thousandth, and where tissue is compressed the Hessian leaves out
-        // what would make it indefinite; of springs that is more.
-        const std::string name = model;
-        const double slack = name == "linear" ? 1e-3 : name == "mass_spring" ? 0.05 : 0.02;
-        EXPECT_LE((stiffness * compliance - Mat3::Identity()).norm(), slack)
-            << model << order << shape << "\n"
-            << stiffness * compliance;
-        EXPECT_GT(compliance.diagonal().minCoeff(), 0.0);
-      }
+TEST(ForceFeedback, ForceAndTorqueAreTheEnergysDerivativesAlongTheToolsMotion) {
+  for_each_case([](const std::string& model, int order, const char* shape) {
+    Scene scene(scene_of(model, order, shape), block());
+    scene.step(at(Vec3::Zero()), 0.0);
+    const auto energy = [&](const Vec3& motion, double angle) {
+      const StepReport report = scene.step(at(motion, angle), 0.01);
+      EXPECT_FALSE(report.not_converged) << model << order;
+      return *report.energy;
+    };
+    constexpr double kStep = 1e-5, kTurn = 1e-4;
+    Vec3 slope;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 aside = kStep * Vec3::Unit(axis);
+      slope[axis] = (energy(kMotion + aside, 0.0) - energy(kMotion - aside, 0.0)) / (2.0 * kStep);
     }
-  }
+    const double turning = (energy(kMotion, kTurn) - energy(kMotion, -kTurn)) / (2.0 * kTurn);
+    energy(kMotion, 0.0);
+    ASSERT_TRUE(scene.tool_feedback()[0]);
+    const Wrench felt = scene.tool_feedback()[0]->wrench;
+    EXPECT_LE((felt.force + slope).norm(), 1e-4 * slope.norm()) << model << order << shape;
+    EXPECT_NEAR(felt.torque.dot(Vec3(1.0, 2.0, -1.0).normalized()), -turning,
+                1e-3 * felt.torque.norm())
+        << model << order << shape;
+    // What the anchors bear.
+    EXPECT_LE((felt.force + scene.anchor_forces()[0]).norm(), 1e-6 * felt.force.norm())
+        << model << order << shape;
+    EXPECT_LE((felt.force - *scene.tool_forces()[0]).norm(), 1e-12 * felt.force.norm());
+  });
+}
+
+TEST(ForceFeedback, ComplianceIsAFiniteDifferenceOfTheStep) {
+  for_each_case([](const std::string& model, int order, const char* shape) {
+    Scene scene(scene_of(model, order, shape), block());
+    scene.step(at(Vec3::Zero()), 0.0);
+    scene.step(at(kMotion), 0.01);
+    const Mat3 compliance = scene.tool_feedback()[0]->compliance;
+    constexpr double kStep = 2e-5;
+    Mat3 stiffness;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 aside = kStep * Vec3::Unit(axis);
+      scene.step(at(kMotion + aside), 0.01);
+      stiffness.col(axis) = -*scene.tool_forces()[0];
+      scene.step(at(kMotion - aside), 0.01);
+      stiffness.col(axis) += *scene.tool_forces()[0];
+    }
+    stiffness /= 2.0 * kStep;
+    // Iterations solve to a thousandth, and where tissue is compressed the Hessian leaves out
+    // what would make it indefinite; of springs that is more.
+    const double slack = model == "linear" ? 1e-3 : model == "mass_spring" ? 0.05 : 0.02;
+    EXPECT_LE((stiffness * compliance - Mat3::Identity()).norm(), slack)
+        << model << order << shape << "\n"
+        << stiffness * compliance;
+    EXPECT_GT(compliance.diagonal().minCoeff(), 0.0);
+  });
 }
 
 TEST(ForceFeedback, IsThereForToolsThatHoldSomethingAndOnlyInScenesThatNameIt) {

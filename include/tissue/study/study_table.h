@@ -24,8 +24,8 @@ Difference difference(const RowResult& result, const RowResult& reference);
 /// eighth of its tets. Right wherever halving edges takes at least a third off the error.
 Difference claimed_error(const RowResult& reference, const RowResult& check);
 
-/// The study as one tidy CSV, a line per row that is there, its errors and those of what they were
-/// measured against.
+/// The study as one tidy CSV, a head and a line per row that is there, its errors and those of what
+/// they were measured against.
 std::string study_table(const Study& study, const std::vector<std::optional<RowResult>>& results);
 
 /// How far apart step times of the same row, run again, were: (largest − smallest) / median;

@@ -1,6 +1,7 @@
 #include "tissue/study/row_file.h"
 
 #include "tissue/base/error.h"
+#include "tissue/base/safe_path.h"
 
 #include <nlohmann/json.hpp>
 
@@ -20,15 +21,13 @@ std::string path_of(std::size_t row, const std::string& folder, const char* endi
   return (fs::path(folder) / name).string();
 }
 
-// Appears when it is complete.
 void write_whole(const std::string& path, const char* data, std::size_t size) {
-  const std::string part = path + ".part";
-  std::ofstream file(part, std::ios::binary);
+  AtomicFile whole(path);
+  std::ofstream file(whole.temporary(), std::ios::binary);
   file.write(data, static_cast<std::streamsize>(size));
   file.close();
-  std::error_code failed;
-  if (file) fs::rename(part, path, failed);
-  if (!file || failed) throw InputError(ErrorCode::kIo, "'" + path + "' cannot be written");
+  if (!file) throw InputError(ErrorCode::kIo, "output: '" + path + "' cannot be written");
+  whole.commit();
 }
 
 void append(std::vector<double>& values, const std::vector<Vec3>& vectors) {

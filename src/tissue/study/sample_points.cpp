@@ -3,6 +3,7 @@
 #include "tissue/base/disjoint_sets.h"
 #include "tissue/base/error.h"
 #include "tissue/field/density_window.h"
+#include "tissue/refine/levels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,6 @@
 
 namespace tissue {
 namespace {
-
-// As the mesher's default.
-constexpr double kDensest = 255.0;
 
 using Inside = std::function<bool(const Vec3&)>;
 using Cell = std::array<int, 3>;
@@ -73,7 +71,7 @@ std::vector<Vec3> in_world(const Grid& grid, double step, const std::vector<Cell
 SamplePoints sample_points(const Volume& volume, const ImplicitSurface& surface,
                            const SamplePointOptions& options) {
   const Grid& grid = volume.grid;
-  const DensityWindow window = default_window(volume, surface, kDensest);
+  const DensityWindow window = default_window(volume, surface, LevelOptions().d_max);
   return with_implicit_function(surface, [&](const auto& f) {
     return with_sampler(volume, [&](const auto& value) {
       const Inside in_organ = [&](const Vec3& place) { return f(place) < 0.0; };

@@ -3,6 +3,7 @@
 #include "tet_samples.h"
 #include "tissue/base/error.h"
 #include "tissue/base/stage_clock.h"
+#include "tissue/simulate/scene_run.h"
 #include "tissue/study/material_places.h"
 
 #include <algorithm>
@@ -59,17 +60,15 @@ Pilot run_pilot(const std::shared_ptr<const Volume>& volume, const ImplicitSurfa
   const std::vector<double> young = young_of(motion.scene.material, *body);
   Pilot pilot = {*body, std::vector<double>(body->tets.size(), 0.0)};
   double farthest = 0.0;
-  for (std::size_t i = 0; i < motion.instants.size(); ++i) {
+  run_along(scene, motion.instants, [&](std::size_t) {
     run.go_on();
-    const double dt = i == 0 ? 0.0 : motion.instants[i].time - motion.instants[i - 1].time;
-    scene.step(motion.instants[i].tools, dt);
     const std::vector<double> now = strain_difficulty(*body, scene.state().positions, young);
     for (std::size_t t = 0; t < now.size(); ++t) pilot.difficulty[t] += now[t];
     for (std::size_t v = 0; v < body->rest.size(); ++v) {
       farthest =
           std::max(farthest, (scene.state().positions[v] - body->rest[v].cast<double>()).norm());
     }
-  }
+  });
   if (farthest > kRounding * std::cbrt(mesh.statistics.volume)) return pilot;
   throw InputError(ErrorCode::kScene,
                    "scene: " + motion.scene.name + " strains nothing on a mesh of " +

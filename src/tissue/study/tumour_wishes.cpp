@@ -7,14 +7,11 @@
 namespace tissue {
 namespace {
 
-// As the mesher's default.
-constexpr double kDensest = 255.0;
-
 // Calls body(any_tumour, any_other) for each tet and keeps the levels that it gives.
 template <class Body>
 LevelWishes by_tumour(const Volume& volume, const ImplicitSurface& surface, double above,
                       const Body& body) {
-  const DensityWindow window = default_window(volume, surface, kDensest);
+  const DensityWindow window = default_window(volume, surface, LevelOptions().d_max);
   return [&volume, window, above, body](const std::vector<Vec3>& vertices,
                                         const std::vector<Tet>& tets) {
     std::vector<std::uint8_t> levels;
