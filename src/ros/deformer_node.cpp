@@ -220,10 +220,12 @@ void DeformerNode::publish_status() {
   status.energy = last_step_.energy.value_or(std::numeric_limits<double>::quiet_NaN());
   status.min_det_f = quality.min_det_f;
   status.inverted = quality.inverted;
+  status.penetration = last_step_.penetration;
   status.moved_vertices = last_step_.moved_vertices;
   status.dropped_poses = dropped_poses_;
   status.rejected_meshes = rejected_meshes_;
   if (last_step_.clamped) status.flags.push_back("CLAMPED");
+  if (last_step_.tool_inside) status.flags.push_back("TOOL_INSIDE");
   if (last_step_.not_converged) status.flags.push_back("NOT_CONVERGED");
   if (!tools_.empty() && !has_a_tool()) status.flags.push_back("TOOL_LOST");
   if (time_jumped_) status.flags.push_back("TIME_JUMP");

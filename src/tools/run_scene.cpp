@@ -96,6 +96,7 @@ nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& reco
   }
   if (record.not_converged > 0) flags.push_back("NOT_CONVERGED");
   if (record.clamped) flags.push_back("CLAMPED");
+  if (record.tool_inside) flags.push_back("TOOL_INSIDE");
   return {{"scene", scene.description().name},
           {"model", name(scene.description().model)},
           {"element_order", scene.description().element_order},
@@ -114,6 +115,7 @@ nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& reco
           {"energy_j", record.last.energy ? nlohmann::json(*record.last.energy) : nlohmann::json()},
           {"min_det_f", quality.min_det_f},
           {"inverted", quality.inverted},
+          {"penetration_m", record.penetration},
           {"probes", probes},
           {"reaction_n", reactions},
           {"feedback", feedback_of(scene)},

@@ -60,7 +60,7 @@ void print(const Row& row, int order) {
     std::printf("– | – | – |\n");
     return;
   }
-  tissue_test::GraspedBeam moving(cells, row.model, order, {tissue::Effect::kInertia});
+  tissue_test::GraspedBeam moving(cells, row.model, order, {tissue::InertiaOptions{}});
   std::printf("%.3g | ", step_times(moving).median);
   const double sag = tissue_test::beam_sag(cells, order, *row.tissue);
   const tissue::TetMesh ball = tissue_test::refined_ball(order == 1 ? 0.010 : 0.020);

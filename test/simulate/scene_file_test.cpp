@@ -32,17 +32,15 @@ TEST(SceneFile, ReadsEveryKey) {
   EXPECT_EQ(scene.tools[0].name, "stylus");
   EXPECT_EQ(scene.tools[0].radius, 0.004);
   EXPECT_FALSE(scene.tools[0].grasps);
-  EXPECT_TRUE(scene.push.density_response);
-  EXPECT_EQ(scene.push.reference_density, 80.0);
-  EXPECT_EQ(scene.recovery_time.value(), 0.5);
-  EXPECT_TRUE(scene.fold_guard);
+  ASSERT_TRUE(scene.has<DensityResponseOptions>());
+  EXPECT_EQ(scene.find<DensityResponseOptions>()->reference, 80.0);
+  EXPECT_EQ(scene.find<RecoveryOptions>()->time, 0.5);
+  EXPECT_TRUE(scene.has<FoldGuardOptions>());
 }
 
 TEST(SceneFile, LeavesOutWhatIsNotNamed) {
   const SceneDescription scene = parse_scene("model: closed_form");
-  EXPECT_FALSE(scene.push.density_response);
-  EXPECT_FALSE(scene.recovery_time.has_value());
-  EXPECT_FALSE(scene.fold_guard);
+  EXPECT_TRUE(scene.effects.empty());
 }
 
 // A scene with one line put into it, and what is said about it.

@@ -32,10 +32,7 @@ std::shared_ptr<const Body> ball_body(double spacing) {
 SceneDescription with_all_effects() {
   SceneDescription scene;
   scene.push.range = 0.03;
-  scene.push.density_response = true;
-  scene.recovery_time = 0.2;
-  scene.fold_guard = true;
-  scene.effects = {Effect::kDensityResponse, Effect::kRecovery, Effect::kFoldGuard};
+  scene.effects = {DensityResponseOptions{}, RecoveryOptions{0.2}, FoldGuardOptions{}};
   scene.tools[0].radius = 0.002;
   return scene;
 }
@@ -87,7 +84,7 @@ TEST(Scene, ReleaseEndsInTheBitExactRestShape) {
 
 TEST(Scene, TissueStaysWhereItWasLeftWithoutRecovery) {
   SceneDescription description = with_all_effects();
-  description.recovery_time.reset();
+  description.effects = {DensityResponseOptions{}, FoldGuardOptions{}};
   Scene scene(description, ball_body(0.008));
   scene.step(at(kTop), 0.0);
   scene.step(at(kTop - Vec3(0, 0, 0.005)), 0.01);
@@ -231,7 +228,7 @@ TEST(FoldGuard, TheSceneClampsAndSaysSo) {
   SceneDescription description = with_all_effects();
   const auto body = ball_body(0.008);
   Scene guarded(description, body);
-  description.fold_guard = false;
+  description.effects.pop_back();
   Scene unguarded(description, body);
   for (Scene* scene : {&guarded, &unguarded}) scene->step(at(kTop), 0.0);
   const Vec3 deep = kTop - Vec3(0, 0, 0.029);

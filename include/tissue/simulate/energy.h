@@ -17,6 +17,10 @@ class Energy {
   virtual double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
                           Hessian* hessian) const = 0;
 
+  /// True of one that stands for a constraint: far from a solution its forces are larger than any
+  /// that are meant.
+  virtual bool is_penalty() const { return false; }
+
   double value(const Eigen::VectorXd& positions) const {
     return evaluate(positions, nullptr, nullptr);
   }

@@ -9,8 +9,9 @@
 namespace tissue {
 
 struct EquilibriumOptions {
-  /// Of the residual: the norm of the forces on free nodes, by that of the forces that hold fixed
-  /// ones or, if it is larger, of those that were out of balance at the start.
+  /// Of the residual: the norm of the forces on free nodes, by the largest of those of the forces
+  /// that hold fixed ones, that were out of balance at the start, penalties left out, and of the
+  /// penalties'.
   double tolerance = 1e-3;
   int max_iterations = 200;
 };
@@ -58,8 +59,9 @@ class Equilibrium {
   Eigen::VectorXd response(const Eigen::VectorXd& positions, const Eigen::VectorXd& motion);
 
   /// The same for several motions at once, where dE/dx changes by `pulls` besides; `forces` become
-  /// the changes of dE/dx that the answers then leave to what is held. Empty where the Hessian
-  /// cannot be solved with.
+  /// the changes of dE/dx that the answers then leave to what is held. By differences of the
+  /// gradient, and so without what the Hessian leaves out. Empty where that is not positive
+  /// definite.
   std::vector<Eigen::VectorXd> responses(const Eigen::VectorXd& positions,
                                          const std::vector<Eigen::VectorXd>& motions,
                                          const std::vector<Eigen::VectorXd>& pulls,
@@ -77,11 +79,14 @@ class Equilibrium {
  private:
   double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
                   Hessian* hessian) const;
+  Eigen::VectorXd gradient_change(const Eigen::VectorXd& positions,
+                                  const Eigen::VectorXd& motion) const;
   double prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient);
   bool use_fallback(const Eigen::VectorXd& positions);
   bool prepare_active();
   bool solve_for(const Eigen::VectorXd& positions, const Eigen::VectorXd& pull,
                  Eigen::VectorXd& step);
+  Eigen::VectorXd penalties(const Eigen::VectorXd& positions) const;
   double norm_of(const Eigen::VectorXd& gradient, bool of_fixed) const;
   bool line_search(const Eigen::VectorXd& step, Eigen::VectorXd& gradient,
                    Eigen::VectorXd& positions, double& energy) const;

@@ -26,8 +26,13 @@ struct EffectCost {
 
 /// What one step did.
 struct StepReport {
-  /// The push was held back so that no tet folds.
+  /// The push was held back so that no tet folds, or a tool could not be followed all its way
+  /// through the tissue.
   bool clamped = false;
+  /// A tool that presses came up inside the tissue: it touches nothing until it has been outside.
+  bool tool_inside = false;
+  /// How deep the surface lies in a tool that presses, at most [m].
+  double penetration = 0.0;
   bool tool_lost = false;
   /// No equilibrium was found: the state is the last valid one.
   bool not_converged = false;

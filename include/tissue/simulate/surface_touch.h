@@ -21,7 +21,7 @@ class SurfaceTouch {
   double longest_edge_ = 0.0;
 };
 
-/// Distance from a point to a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Distance from a point to a triangle.
 double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace tissue

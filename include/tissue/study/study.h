@@ -56,7 +56,7 @@ struct StudyRow {
   Model model = Model::kNeoHookean;
   int element_order = 1;
   /// An effect of the scene that is left out.
-  std::optional<Effect> without;
+  std::optional<std::string> without;
 };
 
 /// What is to be compared: a list of rows.

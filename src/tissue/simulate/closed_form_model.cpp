@@ -15,7 +15,17 @@ constexpr double kFoldMargin = 0.999;
 class ClosedFormModel : public DeformationModel {
  public:
   ClosedFormModel(const SceneDescription& scene, const Body& body, EffectCosts& costs)
-      : scene_(scene), body_(&body), costs_(costs), state_(rest_state(body)), touch_(body) {}
+      : scene_(scene),
+        recovery_(scene.find<RecoveryOptions>()),
+        push_(scene.push),
+        body_(&body),
+        costs_(costs),
+        state_(rest_state(body)),
+        touch_(body) {
+    const auto* const response = scene.find<DensityResponseOptions>();
+    push_.density_response = response != nullptr;
+    if (response != nullptr) push_.reference_density = response->reference;
+  }
 
   StepReport step(const ToolPoses& tools, double dt) override {
     const std::optional<ToolPose>& tool = tools.front();
@@ -49,16 +59,16 @@ class ClosedFormModel : public DeformationModel {
     const std::optional<std::uint32_t> target =
         touch_.target(tool.position, scene_.tools.front().radius);
     if (!target) return;
-    if (!scene_.recovery_time) put_to_rest();
+    if (!recovery_) put_to_rest();
     target_ = *target;
     start_ = tool.position;
     held_seconds_ = 0.0;
     {
-      const CostClock clock(costs_.of(Effect::kDensityResponse));
-      field_ = push_field(body_->rest, body_->densities, target_, scene_.push);
+      const CostClock clock(costs_.of<DensityResponseOptions>());
+      field_ = push_field(body_->rest, body_->densities, target_, push_);
     }
-    if (scene_.fold_guard) {
-      EffectCost* const cost = costs_.of(Effect::kFoldGuard);
+    if (scene_.has<FoldGuardOptions>()) {
+      EffectCost* const cost = costs_.of<FoldGuardOptions>();
       const CostClock clock(cost);
       guard_.emplace(*body_, field_);
       if (cost != nullptr) cost->bytes = guard_->bytes();
@@ -85,7 +95,7 @@ class ClosedFormModel : public DeformationModel {
     Vec3 displacement = gain * (tool.position - start_);
     bool clamped = false;
     if (guard_) {
-      const CostClock clock(costs_.of(Effect::kFoldGuard));
+      const CostClock clock(costs_.of<FoldGuardOptions>());
       const double amplitude = displacement.norm();
       if (amplitude > 0.0) {
         const double limit = kFoldMargin * guard_->limit(displacement / amplitude);
@@ -99,7 +109,7 @@ class ClosedFormModel : public DeformationModel {
   }
 
   void release() {
-    if (scene_.recovery_time) {
+    if (recovery_) {
       phase_ = Phase::kRecovering;
       recovering_seconds_ = 0.0;
     } else {
@@ -108,9 +118,9 @@ class ClosedFormModel : public DeformationModel {
   }
 
   void recover(double dt) {
-    const CostClock clock(costs_.of(Effect::kRecovery));
+    const CostClock clock(costs_.of<RecoveryOptions>());
     recovering_seconds_ += dt;
-    const double left = 1.0 - recovering_seconds_ / *scene_.recovery_time;
+    const double left = 1.0 - recovering_seconds_ / recovery_->time;
     if (!(left > 0.0)) {
       put_to_rest();
       return;
@@ -129,6 +139,9 @@ class ClosedFormModel : public DeformationModel {
   }
 
   const SceneDescription& scene_;
+  // Nothing where tissue stays where it was left.
+  const RecoveryOptions* recovery_;
+  PushOptions push_;
   const Body* body_;
   EffectCosts& costs_;
   State state_;

@@ -9,15 +9,18 @@ namespace {
 // A longer step than these many substeps is cut into as many, longer ones: implicit Euler stays
 // stable, and what is lost is detail of the motion in between.
 constexpr int kMaxSubsteps = 100;
+// No more than these for tools that may not go their way at once.
+constexpr int kMaxStrides = 16;
 
 }  // namespace
 
 Dynamics::Dynamics(const SceneDescription& scene, const FiniteElements& elements,
                    const Energy& tissue, EffectCosts& costs)
-    : scene_(scene),
+    : solver_(scene.solver),
+      options_(*scene.find<InertiaOptions>()),
       inertia_(elements, scene.material.mass_density),
-      inertia_cost_(costs.of(Effect::kInertia)),
-      damping_cost_(costs.of(Effect::kDamping)),
+      inertia_cost_(costs.of<InertiaOptions>()),
+      damping_cost_(costs.of<DampingOptions>()),
       velocities_(Eigen::VectorXd::Zero(rest_positions(elements).size())) {
   Eigen::AlignedBox3d box;
   for (const Vec3& place : elements.rest()) box.extend(place);
@@ -25,7 +28,8 @@ Dynamics::Dynamics(const SceneDescription& scene, const FiniteElements& elements
   counted_.emplace_back(inertia_, inertia_cost_);
   inertia_cost_->bytes = inertia_.bytes() + velocities_.size() * sizeof(double);
   if (damping_cost_ == nullptr) return;
-  damping_.emplace(tissue, elements, inertia_.mass(), scene.damping.mass, scene.damping.stiffness);
+  const DampingOptions& damping = *scene.find<DampingOptions>();
+  damping_.emplace(tissue, elements, inertia_.mass(), damping.mass, damping.stiffness);
   counted_.emplace_back(*damping_, damping_cost_);
   damping_cost_->bytes = damping_->bytes() + velocities_.size() * sizeof(double);
 }
@@ -45,32 +49,37 @@ double Dynamics::kinetic_energy() const {
   return 0.5 * velocities_.dot(inertia_.mass().times(velocities_));
 }
 
-EquilibriumReport Dynamics::advance(
-    Equilibrium& equilibrium,
-    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& motion_left, double dt,
-    Eigen::VectorXd& positions) {
-  const int substeps = std::clamp(
-      static_cast<int>(std::min(std::ceil(dt / scene_.inertia.substep), 1e6)), 1, kMaxSubsteps);
+EquilibriumReport Dynamics::advance(Equilibrium& equilibrium, ToolActions& actions,
+                                    const ToolPoses& tools, double dt, Eigen::VectorXd& positions) {
+  const double wished = std::min(std::ceil(dt / options_.substep), 1e6),
+               strides = 1.0 / std::max(actions.stride(tools, positions), 1.0 / kMaxStrides);
+  const int substeps =
+      std::clamp(static_cast<int>(std::ceil(std::max(wished, strides))), 1, kMaxSubsteps);
   const Eigen::VectorXd positions_before = positions, velocities_before = velocities_;
+  const ToolPoses tools_before = actions.reached();
   EquilibriumReport report;
   report.converged = true;
   for (int done = 0; done < substeps && report.converged; ++done) {
-    const Eigen::VectorXd motion = motion_left(positions) / (substeps - done);
-    const EquilibriumReport one = substep(equilibrium, motion, dt / substeps, positions);
-    report.converged = one.converged;
+    const double part = std::min(1.0 / (substeps - done), actions.stride(tools, positions));
+    const Eigen::VectorXd motion =
+        actions.follow(between(actions.reached(), tools, part), positions);
+    const EquilibriumReport one = substep(equilibrium, actions, motion, dt / substeps, positions);
+    report.converged = one.converged && actions.accepts(positions);
     report.iterations += one.iterations;
     report.residual = std::max(report.residual, one.residual);
   }
   if (!report.converged) {
     positions = positions_before;
     velocities_ = velocities_before;
+    actions.follow(tools_before, positions);
   }
   count_quiet_steps();
   return report;
 }
 
-EquilibriumReport Dynamics::substep(Equilibrium& equilibrium, const Eigen::VectorXd& motion,
-                                    double h, Eigen::VectorXd& positions) {
+EquilibriumReport Dynamics::substep(Equilibrium& equilibrium, const ToolActions& actions,
+                                    const Eigen::VectorXd& motion, double h,
+                                    Eigen::VectorXd& positions) {
   const Eigen::VectorXd start = positions;
   {
     const CostClock clock(inertia_cost_);
@@ -83,17 +92,20 @@ EquilibriumReport Dynamics::substep(Equilibrium& equilibrium, const Eigen::Vecto
   if (h != last_h_) equilibrium.forget_hessian();
   last_h_ = h;
   EquilibriumReport report = equilibrium.linearised_step(positions, motion);
-  EquilibriumOptions options = scene_.solver;
-  options.max_iterations = scene_.inertia.iterations - 1;
+  EquilibriumOptions options = solver_;
+  if (!actions.is_stiff()) options.max_iterations = options_.iterations - 1;
   // A step that goes too far is found by line searches instead.
   if (!report.converged) {
     positions = start + motion;
-    options.max_iterations = scene_.solver.max_iterations;
+    options.max_iterations = solver_.max_iterations;
   }
   if (options.max_iterations > 0) {
-    const int iterations = report.iterations;
-    report = equilibrium.solve(positions, options);
-    report.iterations += iterations;
+    int iterations = report.iterations;
+    do {
+      report = equilibrium.solve(positions, options);
+      iterations += report.iterations;
+    } while (report.converged && actions.refine(positions));
+    report.iterations = iterations;
   }
   if (report.converged) {
     velocities_ = (positions - start) / h;

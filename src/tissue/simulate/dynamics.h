@@ -1,11 +1,10 @@
 #pragma once
 
 #include "effect_costs.h"
+#include "tool_actions.h"
 #include "tissue/simulate/damping.h"
 #include "tissue/simulate/equilibrium.h"
 #include "tissue/simulate/inertia.h"
-
-#include <functional>
 
 namespace tissue {
 
@@ -19,12 +18,10 @@ class Dynamics {
   /// What a step adds to the body's own energies.
   std::vector<const Energy*> energies() const;
 
-  /// Advances by `dt` > 0 seconds, in substeps; `motion_left` says by how much what is held must
-  /// still move from where it is. Where a substep fails, positions and velocities are as before.
-  EquilibriumReport advance(
-      Equilibrium& equilibrium,
-      const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& motion_left, double dt,
-      Eigen::VectorXd& positions);
+  /// Advances by `dt` > 0 seconds, in substeps in which the tools go to where they are wished.
+  /// Where a substep fails, everything is as before.
+  EquilibriumReport advance(Equilibrium& equilibrium, ToolActions& actions, const ToolPoses& tools,
+                            double dt, Eigen::VectorXd& positions);
 
   /// At rest.
   void reset();
@@ -39,11 +36,12 @@ class Dynamics {
 
  private:
   static constexpr int kQuietSteps = 10;
-  EquilibriumReport substep(Equilibrium& equilibrium, const Eigen::VectorXd& motion, double h,
-                            Eigen::VectorXd& positions);
+  EquilibriumReport substep(Equilibrium& equilibrium, const ToolActions& actions,
+                            const Eigen::VectorXd& motion, double h, Eigen::VectorXd& positions);
   void count_quiet_steps();
 
-  const SceneDescription& scene_;
+  EquilibriumOptions solver_;
+  InertiaOptions options_;
   InertiaEnergy inertia_;
   std::optional<DampingEnergy> damping_;
   std::vector<CountedEnergy> counted_;

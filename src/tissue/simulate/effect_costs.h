@@ -10,20 +10,24 @@ namespace tissue {
 /// Seconds and bytes of the effects that a scene names, and of no others.
 class EffectCosts {
  public:
+  /// `effects` must outlive this.
   explicit EffectCosts(const std::vector<Effect>& effects) : effects_(effects) {
-    for (const Effect effect : effects) costs_.push_back({name(effect), 0.0, 0});
+    for (const Effect& effect : effects) costs_.push_back({effect.name(), 0.0, 0});
   }
-  /// Nothing if the scene does not name the effect.
-  EffectCost* of(Effect effect) {
+  /// Of the effect with these parameters; nothing if the scene does not name it.
+  template <class Options>
+  EffectCost* of() {
     for (std::size_t i = 0; i < effects_.size(); ++i) {
-      if (effects_[i] == effect) return &costs_[i];
+      if (effects_[i].template options<Options>() != nullptr) return &costs_[i];
     }
     return nullptr;
   }
+  /// Of one of the scene's effects, by its number.
+  EffectCost& at(std::size_t effect) { return costs_[effect]; }
   const std::vector<EffectCost>& all() const { return costs_; }
 
  private:
-  std::vector<Effect> effects_;
+  const std::vector<Effect>& effects_;
   std::vector<EffectCost> costs_;
 };
 
@@ -53,6 +57,8 @@ class CountedEnergy : public Energy {
     const CostClock clock(cost_);
     return energy_.evaluate(positions, gradient, hessian);
   }
+
+  bool is_penalty() const override { return energy_.is_penalty(); }
 
  private:
   const Energy& energy_;

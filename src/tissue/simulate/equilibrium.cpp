@@ -1,5 +1,6 @@
 #include "tissue/simulate/equilibrium.h"
 
+#include "conjugate_gradients.h"
 #include "tissue/base/error.h"
 
 #include <algorithm>
@@ -58,6 +59,14 @@ double Equilibrium::evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* 
 Eigen::VectorXd Equilibrium::gradient(const Eigen::VectorXd& positions) const {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(positions.size());
   evaluate(positions, &sum, nullptr);
+  return sum;
+}
+
+Eigen::VectorXd Equilibrium::penalties(const Eigen::VectorXd& positions) const {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(positions.size());
+  for (const Energy* energy : energies_) {
+    if (energy->is_penalty()) energy->evaluate(positions, &sum, nullptr);
+  }
   return sum;
 }
 
@@ -159,20 +168,55 @@ Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
   return motion + step;
 }
 
+// How dE/dx changes along a motion: the Hessian that systems have leaves out what would make it
+// indefinite, differences do not.
+Eigen::VectorXd Equilibrium::gradient_change(const Eigen::VectorXd& positions,
+                                             const Eigen::VectorXd& motion) const {
+  constexpr double kPart = 1e-6;
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(positions.size());
+  const double farthest = motion.cwiseAbs().maxCoeff();
+  if (quadratic_) {
+    active_->multiply_add(motion, change);
+  } else if (farthest > 0.0) {
+    const double step = kPart * extent(positions) / farthest;
+    change =
+        (gradient(positions + step * motion) - gradient(positions - step * motion)) / (2.0 * step);
+  }
+  return change;
+}
+
 std::vector<Eigen::VectorXd> Equilibrium::responses(const Eigen::VectorXd& positions,
                                                     const std::vector<Eigen::VectorXd>& motions,
                                                     const std::vector<Eigen::VectorXd>& pulls,
                                                     std::vector<Eigen::VectorXd>& forces) {
+  constexpr double kTolerance = 1e-4;
   prepare(positions, nullptr);
+  if (!is_prepared_) return {};
+  const auto clear_fixed = [&](Eigen::VectorXd& vector) {
+    for (std::size_t i = 0; i < fixed_.size(); ++i) {
+      if (fixed_[i] != 0) vector[static_cast<Eigen::Index>(i)] = 0.0;
+    }
+  };
   std::vector<Eigen::VectorXd> answers;
   forces.clear();
   for (std::size_t k = 0; k < motions.size(); ++k) {
-    Eigen::VectorXd pull = pulls[k], step;
-    if (is_prepared_) active_->multiply_add(motions[k], pull);
-    if (!is_prepared_ || !solve_for(positions, pull, step)) return {};
+    Eigen::VectorXd pull = -pulls[k] - gradient_change(positions, motions[k]), step;
+    clear_fixed(pull);
+    bool is_solved = true;
+    const int iterations = conjugate_gradients(
+        pull, kTolerance,
+        [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
+          product = gradient_change(positions, from);
+          clear_fixed(product);
+        },
+        [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
+          is_solved = is_solved && solve_for(positions, -residual, z);
+          if (!is_solved) z.setZero(residual.size());
+        },
+        step);
+    if (iterations < 0) return {};
     answers.push_back(motions[k] + step);
-    forces.push_back(pull);
-    active_->multiply_add(step, forces.back());
+    forces.push_back(pulls[k] + gradient_change(positions, answers.back()));
   }
   return answers;
 }
@@ -208,10 +252,12 @@ EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
   EquilibriumReport report;
   Eigen::VectorXd forces = Eigen::VectorXd::Zero(positions.size()), step;
   report.energy = evaluate(positions, &forces, nullptr);
-  const double at_start = norm_of(forces, false);
+  Eigen::VectorXd penalty = penalties(positions);
+  const double at_start = norm_of(forces - penalty, false);
   for (;; ++report.iterations) {
     const double out_of_balance = norm_of(forces, false);
-    const double scale = std::max(at_start, norm_of(forces, true));
+    if (report.iterations > 0) penalty = penalties(positions);
+    const double scale = std::max({at_start, norm_of(forces, true), norm_of(penalty, false)});
     // Forces that are nothing but rounding are in balance.
     const auto is_rounding = [&] {
       return out_of_balance <= kRounding * largest_stiffness_ * extent(positions);

@@ -26,7 +26,7 @@ HeldNodes::HeldNodes(const FiniteElements& elements, const std::vector<ToolDescr
 bool HeldNodes::update(const ToolPoses& tools, const std::vector<Vec3>& vertices_now) {
   bool changed = false;
   for (std::size_t i = 0; i < grips_.size(); ++i) {
-    if (tools_[i].shape == ToolShape::kPad) continue;
+    if (tools_[i].shape != ToolShape::kSphere || !tools_[i].grasps) continue;
     if (!grips_[i].update(tools[i], tools_[i], vertices_now, holders_)) continue;
     changed = true;
     // The next tool takes what is left.

@@ -117,7 +117,7 @@ std::vector<Instant> instants_of(const SceneDescription& scene,
                                  const std::vector<std::vector<StampedPose>>& paths) {
   std::vector<Instant> instants = merged(paths);
   if (!instants.empty()) return instants;
-  const auto steps = scene.has(Effect::kInertia)
+  const auto steps = scene.has<InertiaOptions>()
                          ? static_cast<std::size_t>(std::ceil(scene.duration / scene.dt - 1e-9))
                          : 0;
   for (std::size_t i = 0; i <= steps; ++i) {

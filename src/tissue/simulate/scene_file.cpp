@@ -1,34 +1,20 @@
 #include "tissue/simulate/scene_file.h"
 
 #include "anchor_reader.h"
+#include "effect_kind.h"
 #include "material_reader.h"
-
-#include <algorithm>
-#include <set>
 
 namespace tissue {
 namespace {
-
-constexpr double kHuge = 1e12;
-
-Vec3 place_from(const YamlReader& reader, const char* what) {
-  const std::vector<YamlReader> entries = reader.entries();
-  if (entries.size() != 3) reader.refuse(std::string("is not ") + what);
-  Vec3 place;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    place[static_cast<Eigen::Index>(axis)] = entries[axis].number(-kHuge, kHuge);
-  }
-  return place;
-}
 
 std::map<std::string, Probe> probes_from(const YamlReader& reader) {
   std::map<std::string, Probe> probes;
   for (const YamlReader& probe : reader.members()) {
     if (probe.is_list()) {
-      probes[probe.key()] = place_from(probe, "a place [x, y, z]");
+      probes[probe.key()] = vector_from(probe, "a place [x, y, z]");
     } else {
       probe.require_keys({"density_above"});
-      probes[probe.key()] = DensityProbe{probe.at("density_above").number(0.0, kHuge)};
+      probes[probe.key()] = DensityProbe{probe.at("density_above").number(0.0, kHugeParameter)};
     }
   }
   return probes;
@@ -44,24 +30,33 @@ EquilibriumOptions solver_from(const YamlReader& reader) {
   return options;
 }
 
+void read_shape(const YamlReader& shape, ToolDescription& tool) {
+  shape.require_keys({"sphere", "pad", "capsule"});
+  if (shape.members().size() != 1) shape.refuse("is not one shape");
+  if (shape.has("sphere")) {
+    tool.radius = shape.at("sphere").number(0.0, 1.0, true);
+  } else if (shape.has("pad")) {
+    const YamlReader pad = shape.at("pad");
+    pad.require_keys({"radius", "stiffness"});
+    tool.shape = ToolShape::kPad;
+    tool.radius = pad.at("radius").number(0.0, 1.0, true);
+    if (pad.has("stiffness")) {
+      tool.pad_stiffness = pad.at("stiffness").number(0.0, kHugeParameter, true);
+    }
+  } else {
+    const YamlReader capsule = shape.at("capsule");
+    capsule.require_keys({"radius", "length"});
+    tool.shape = ToolShape::kCapsule;
+    tool.radius = capsule.at("radius").number(0.0, 1.0, true);
+    tool.length = capsule.at("length").number(0.0, 10.0, true);
+  }
+}
+
 ToolDescription tool_from(const YamlReader& entry) {
   entry.require_keys({"name", "shape", "mode"});
   ToolDescription tool;
   tool.name = entry.at("name").word();
-  if (entry.has("shape")) {
-    const YamlReader shape = entry.at("shape");
-    shape.require_keys({"sphere", "pad"});
-    if (shape.members().size() != 1) shape.refuse("is not one shape");
-    if (shape.has("sphere")) {
-      tool.radius = shape.at("sphere").number(0.0, 1.0, true);
-    } else {
-      const YamlReader pad = shape.at("pad");
-      pad.require_keys({"radius", "stiffness"});
-      tool.shape = ToolShape::kPad;
-      tool.radius = pad.at("radius").number(0.0, 1.0, true);
-      if (pad.has("stiffness")) tool.pad_stiffness = pad.at("stiffness").number(0.0, kHuge, true);
-    }
-  }
+  if (entry.has("shape")) read_shape(entry.at("shape"), tool);
   if (entry.has("mode")) {
     const std::string mode = entry.at("mode").word();
     if (mode != "press" && mode != "grasp") {
@@ -81,10 +76,15 @@ std::vector<ToolDescription> tools_from(const YamlReader& reader, Model model) {
         entry.refuse("is a second tool '" + tools[i].name + "'");
       }
     }
-    if (model != Model::kClosedForm && !tools.back().grasps) {
-      entry.refuse(std::string("a tool that presses needs the effect contact; "
-                               "without it, model ") +
-                   name(model) + " moves under tools of mode grasp");
+    const ToolDescription& tool = tools.back();
+    if (tool.shape == ToolShape::kPad && !tool.grasps) {
+      entry.refuse("of mode press is a sphere or a capsule, not a pad");
+    }
+    if (tool.shape == ToolShape::kCapsule && tool.grasps) {
+      entry.refuse("of mode grasp is a sphere or a pad, not a capsule");
+    }
+    if (tool.shape != ToolShape::kSphere && model == Model::kClosedForm) {
+      entry.refuse("of model closed_form is a sphere");
     }
   }
   if (model == Model::kClosedForm && tools.size() != 1) {
@@ -93,77 +93,46 @@ std::vector<ToolDescription> tools_from(const YamlReader& reader, Model model) {
   return tools;
 }
 
-InertiaOptions inertia_from(const YamlReader& reader) {
-  reader.require_keys({"substep", "iterations"});
-  InertiaOptions options;
-  if (reader.has("substep")) options.substep = reader.at("substep").number(0.0, 3600.0, true);
-  if (reader.has("iterations")) {
-    options.iterations = static_cast<int>(reader.at("iterations").number(1.0, 1e6));
-  }
-  return options;
-}
-
-DampingOptions damping_from(const YamlReader& reader) {
-  reader.require_keys({"mass", "stiffness"});
-  DampingOptions options;
-  if (reader.has("mass")) options.mass = reader.at("mass").number(0.0, kHuge);
-  if (reader.has("stiffness")) options.stiffness = reader.at("stiffness").number(0.0, kHuge);
-  return options;
-}
-
 // An effect is a word, or a map from the word to its parameters.
-void add_effect(const YamlReader& entry, SceneDescription& scene, std::set<std::string>& seen) {
+Effect effect_from(const YamlReader& entry, Model model) {
   const bool bare = entry.is_word();
   if (!bare && (!entry.is_map() || entry.members().size() != 1)) {
     entry.refuse("is not an effect");
   }
-  const std::string effect = bare ? entry.word() : entry.members()[0].key();
-  if (!seen.insert(effect).second) entry.refuse("names " + effect + " twice");
-  const auto known = std::find_if(all_effects().begin(), all_effects().end(),
-                                  [&](Effect one) { return effect == name(one); });
-  if (known == all_effects().end() || !can_have(scene.model, *known)) {
+  const std::string name_of = bare ? entry.word() : entry.members()[0].key();
+  const EffectKind* const kind = effect_named(name_of);
+  if (kind == nullptr || !kind->suits(model)) {
     std::string list;
-    for (const Effect one : all_effects()) {
-      if (can_have(scene.model, one)) list += std::string(" ") + name(one);
+    for (const std::string& one : effect_names()) {
+      if (can_have(model, one)) list += " " + one;
     }
-    entry.refuse("'" + effect + "' is not an effect of model " + name(scene.model) +
-                 ", which knows" + list);
+    entry.refuse("'" + name_of + "' is not an effect of model " + name(model) + ", which knows" +
+                 list);
   }
-  scene.effects.push_back(*known);
-  const auto parameters = [&](std::initializer_list<const char*> keys) {
-    if (!bare) entry.members()[0].require_keys(keys);
-  };
-  const auto parameter = [&](const char* key, double fallback, double highest) {
-    parameters({key});
-    if (bare || !entry.members()[0].has(key)) return fallback;
-    return entry.members()[0].at(key).number(0.0, highest, true);
-  };
-  switch (*known) {
-    case Effect::kDensityResponse:
-      scene.push.density_response = true;
-      if (scene.model == Model::kClosedForm) {
-        scene.push.reference_density = parameter("reference", 0.0, kHuge);
-      } else {
-        parameters({});
-      }
-      break;
-    case Effect::kRecovery: scene.recovery_time = parameter("time", 0.2, 3600.0); break;
-    case Effect::kFoldGuard:
-      parameters({});
-      scene.fold_guard = true;
-      break;
-    case Effect::kForceFeedback: parameters({}); break;
-    case Effect::kGravity:
-      parameters({"vector"});
-      if (!bare && entry.members()[0].has("vector")) {
-        scene.gravity = place_from(entry.members()[0].at("vector"), "a vector [x, y, z]");
-      }
-      break;
-    case Effect::kInertia:
-      if (!bare) scene.inertia = inertia_from(entry.members()[0]);
-      break;
-    case Effect::kDamping:
-      if (!bare) scene.damping = damping_from(entry.members()[0]);
+  if (bare) return {*kind, kind->read(nullptr, model)};
+  const YamlReader parameters = entry.members()[0];
+  return {*kind, kind->read(&parameters, model)};
+}
+
+void read_effects(const YamlReader& reader, SceneDescription& scene) {
+  for (const YamlReader& entry : reader.entries()) {
+    const Effect effect = effect_from(entry, scene.model);
+    if (scene.has(effect.name())) entry.refuse(std::string("names ") + effect.name() + " twice");
+    scene.effects.push_back(effect);
+  }
+  for (const Effect& effect : scene.effects) {
+    const std::string objection = objection_to(effect, scene);
+    if (!objection.empty()) reader.refuse("names " + objection);
+  }
+}
+
+void require_contact(const YamlReader& tools, const SceneDescription& scene) {
+  if (scene.model == Model::kClosedForm || scene.has("contact")) return;
+  for (std::size_t i = 0; i < scene.tools.size(); ++i) {
+    if (scene.tools[i].grasps) continue;
+    tools.entries()[i].refuse(std::string("a tool that presses needs the effect contact; "
+                                          "without it, model ") +
+                              name(scene.model) + " moves under tools of mode grasp");
   }
 }
 
@@ -202,15 +171,10 @@ SceneDescription scene_from(const YamlReader& file) {
   if (file.has("duration")) scene.duration = file.at("duration").number(0.0, 1e6, true);
   if (file.has("dt")) scene.dt = file.at("dt").number(0.0, 3600.0, true);
   if (file.has("solver")) scene.solver = solver_from(file.at("solver"));
-  if (file.has("effects")) {
-    std::set<std::string> seen;
-    for (const YamlReader& effect : file.at("effects").entries()) add_effect(effect, scene, seen);
-    if (scene.has(Effect::kDamping) && !scene.has(Effect::kInertia)) {
-      file.at("effects").refuse("names damping without inertia: nothing swings that it could damp");
-    }
-  }
+  if (file.has("effects")) read_effects(file.at("effects"), scene);
+  if (file.has("tools")) require_contact(file.at("tools"), scene);
   if (file.has("material")) {
-    scene.material = material_from(file.at("material"), scene.has(Effect::kDensityResponse));
+    scene.material = material_from(file.at("material"), scene.has<DensityResponseOptions>());
   }
   return scene;
 }

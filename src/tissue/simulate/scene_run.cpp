@@ -17,6 +17,8 @@ RunRecord run_along(Scene& scene, const std::vector<Instant>& instants,
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     record.not_converged += record.last.not_converged;
     record.clamped = record.clamped || record.last.clamped;
+    record.tool_inside = record.tool_inside || record.last.tool_inside;
+    record.penetration = std::max(record.penetration, record.last.penetration);
     if (after_step) after_step(i + 1);
   }
   return record;

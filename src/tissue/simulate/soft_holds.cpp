@@ -34,7 +34,7 @@ bool SoftHolds::are_in(const SceneDescription& scene) {
 
 bool SoftHolds::any_pad() const { return std::any_of(tools_.begin(), tools_.end(), is_pad); }
 
-bool SoftHolds::update(const ToolPoses& tools, const Eigen::VectorXd& positions) {
+bool SoftHolds::take(const ToolPoses& tools, const Eigen::VectorXd& positions) {
   bool changed = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const ToolDescription& tool = tools_[i];
@@ -61,7 +61,7 @@ bool SoftHolds::update(const ToolPoses& tools, const Eigen::VectorXd& positions)
   return changed;
 }
 
-void SoftHolds::release() {
+void SoftHolds::reset() {
   for (std::size_t i = 0; i < pads_.size(); ++i) springs_.detach(first_tool_ + i);
   pads_.assign(tools_.size(), {});
 }
@@ -77,14 +77,15 @@ Wrench SoftHolds::wrench(std::size_t tool, const Eigen::VectorXd& positions,
   return sum;
 }
 
-void SoftHolds::add_pull(std::size_t tool, const Vec3& direction, Eigen::VectorXd& gradient) const {
+void SoftHolds::add_pull(std::size_t tool, const Eigen::VectorXd&, const Vec3& direction,
+                         Eigen::VectorXd& gradient) const {
   for (const SurfaceSprings::Spring& spring : springs_.springs()) {
     if (spring.holder != first_tool_ + tool) continue;
     gradient.segment<3>(3 * Eigen::Index{spring.node}) -= spring.stiffness * direction;
   }
 }
 
-Vec3 SoftHolds::force_change(std::size_t tool, const Vec3& direction,
+Vec3 SoftHolds::force_change(std::size_t tool, const Eigen::VectorXd&, const Vec3& direction,
                              const Eigen::VectorXd& response) const {
   Vec3 sum = Vec3::Zero();
   for (const SurfaceSprings::Spring& spring : springs_.springs()) {
@@ -95,11 +96,12 @@ Vec3 SoftHolds::force_change(std::size_t tool, const Vec3& direction,
   return sum;
 }
 
-void SoftHolds::add_forces(const Eigen::VectorXd& positions, std::vector<Vec3>& forces) const {
-  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += springs_.force(i, positions);
+void SoftHolds::add_anchor_forces(const Eigen::VectorXd& positions,
+                                  std::vector<Vec3>& forces) const {
+  for (std::size_t i = 0; i < first_tool_; ++i) forces[i] += springs_.force(i, positions);
 }
 
-Eigen::VectorXd SoftHolds::motion_to(const ToolPoses& tools) const {
+bool SoftHolds::follow(const ToolPoses& tools, const Eigen::VectorXd&) {
   const std::vector<SurfaceSprings::Spring>& springs = springs_.springs();
   Eigen::VectorXd motion = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * springs.size()));
   std::vector<std::size_t> next(tools_.size(), 0);
@@ -111,7 +113,8 @@ Eigen::VectorXd SoftHolds::motion_to(const ToolPoses& tools) const {
     const Vec3 place = tools[tool]->position + tools[tool]->orientation.normalized() * offset;
     motion.segment<3>(static_cast<Eigen::Index>(3 * i)) = place - springs[i].target;
   }
-  return motion;
+  springs_.move(motion);
+  return !motion.isZero(0.0);
 }
 
 }  // namespace tissue

@@ -1,13 +1,11 @@
 #include "deformation_model.h"
 #include "dynamics.h"
-#include "force_feedback.h"
-#include "held_nodes.h"
-#include "soft_holds.h"
+#include "effect_kind.h"
 #include "solver_choice.h"
 #include "tet_strains.h"
+#include "tool_actions.h"
 #include "tool_response.h"
 #include "tissue/simulate/elastic_energy.h"
-#include "tissue/simulate/gravity.h"
 #include "tissue/simulate/spring_energy.h"
 
 #include <algorithm>
@@ -18,6 +16,10 @@ namespace {
 
 // A step that finds no equilibrium is tried again in halves, so often.
 constexpr int kMaxHalvings = 4;
+// A way that is cut shorter than this is no way.
+constexpr double kShortestStride = 1e-6;
+// Tools that may not go all their way at once come to so many places in a step, at most.
+constexpr int kMaxStrides = 16;
 
 Run run_on(int threads) {
   Run run;
@@ -25,65 +27,54 @@ Run run_on(int threads) {
   return run;
 }
 
-// Tissue as a solid that is always at rest: each step finds the equilibrium under its weight, held
-// by anchors and by what the tools have taken hold of.
+// Tissue as a solid. Without inertia it is always at rest: each step finds the equilibrium under
+// its loads, held by anchors and moved by tools; with it, it goes on in time.
 class SolidModel : public DeformationModel {
  public:
   SolidModel(const SceneDescription& scene, const Body& body, EffectCosts& costs, int threads)
       : scene_(scene),
         body_(body),
         elements_(body, scene.element_order),
+        young_(young_of(scene.material, body)),
         held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
         rest_(rest_positions(elements_)),
         positions_(rest_) {
     make_tissue(costs, threads);
     potentials_ = {tissue_.get()};
-    if (EffectCost* const cost = costs.of(Effect::kGravity)) {
-      const CostClock clock(cost);
-      gravity_.emplace(elements_, scene.material.mass_density, scene.gravity);
-      counted_gravity_.emplace(*gravity_, cost);
-      cost->bytes = gravity_->bytes();
-      potentials_.push_back(&*counted_gravity_);
-    }
     if (SoftHolds::are_in(scene)) {
       soft_.emplace(scene, elements_, body);
-      potentials_.push_back(&soft_->energy());
+      add_part(*soft_, nullptr);
     }
+    for (std::size_t i = 0; i < scene.effects.size(); ++i) make_effect(i, costs.at(i));
     std::vector<const Energy*> energies = potentials_;
-    if (scene.has(Effect::kInertia)) {
+    if (scene.has<InertiaOptions>()) {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
       for (const Energy* energy : dynamics_->energies()) energies.push_back(energy);
     }
-    equilibrium_ = equilibrium_for(scene, elements_, std::move(energies), run_on(threads));
-    if (EffectCost* const cost = costs.of(Effect::kForceFeedback)) {
-      feedback_.emplace(held_, soft_ ? &*soft_ : nullptr, *equilibrium_, cost);
-    }
+    equilibrium_ =
+        equilibrium_for(scene, elements_, std::move(energies), is_quadratic_, run_on(threads));
+    actions_.emplace(scene.tools, held_, parts_);
     reset();
   }
 
   StepReport step(const ToolPoses& tools, double dt) override {
-    bool regrip = held_.update(tools, state_.positions);
-    if (soft_) regrip = soft_->update(tools, positions_now()) || regrip;
-    const bool is_linear = scene_.model == Model::kLinear && !dynamics_;
+    const bool changes = actions_->take(tools, state_.positions, positions_now());
+    if (actions_->regrips()) equilibrium_->hold(held_.flags());
+    const bool is_linear = is_quadratic_ && !dynamics_, keeps = is_linear && !changes && settled_;
     if (dynamics_) {
-      if (regrip) equilibrium_->hold(held_.flags());
-      if (soft_) soft_->move(soft_->motion_to(tools));
       if (dt > 0.0) swing(tools, dt);
-    } else if (is_linear && !(soft_ && soft_->any_pad()) && !regrip && settled_) {
+    } else if (keeps && !(soft_ && soft_->any_pad())) {
       superpose(tools);
     } else {
-      settle(tools, regrip);
+      settle(tools, changes);
     }
-    if (feedback_ && (!dynamics_ || dt > 0.0)) {
-      feedback_->update(tools, positions_now(), is_linear && !regrip);
-    }
+    if (!dynamics_ || dt > 0.0) finish(tools, keeps);
     return report_;
   }
 
   void reset() override {
-    held_.release();
-    if (soft_) soft_->release();
-    if (feedback_) feedback_->reset();
+    for (const ToolActions::Part& part : parts_) part.effect->reset();
+    actions_->release();
     equilibrium_->hold(held_.flags());
     response_.reset();
     positions_ = rest_;
@@ -95,7 +86,8 @@ class SolidModel : public DeformationModel {
     }
     report_.energy = potential_energy();
     // Without a load, rest is the equilibrium.
-    settled_ = !gravity_;
+    settled_ = std::none_of(parts_.begin(), parts_.end(),
+                            [](const ToolActions::Part& part) { return part.effect->loads(); });
   }
 
   bool recovering() const override { return dynamics_ && dynamics_->moving(); }
@@ -111,17 +103,30 @@ class SolidModel : public DeformationModel {
   }
 
   std::vector<std::optional<Vec3>> tool_forces() const override {
-    const std::vector<Vec3> all = forces_on_holders();
-    return {all.begin() + static_cast<std::ptrdiff_t>(scene_.anchors.size()), all.end()};
+    const Eigen::VectorXd positions = positions_now();
+    const std::vector<Vec3> all = forces_on_holders(positions);
+    std::vector<std::optional<Vec3>> forces(
+        all.begin() + static_cast<std::ptrdiff_t>(scene_.anchors.size()), all.end());
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      for (const ToolLink* link : links_) {
+        if (link->acts_on(i)) *forces[i] += link->wrench(i, positions, Vec3::Zero()).force;
+      }
+    }
+    return forces;
   }
 
   std::vector<std::optional<ToolFeedback>> tool_feedback() const override {
-    return feedback_ ? feedback_->tools() : std::vector<std::optional<ToolFeedback>>();
+    for (const ToolActions::Part& part : parts_) {
+      if (const auto* const feedback = part.effect->feedback()) return *feedback;
+    }
+    return {};
   }
 
   std::vector<Vec3> anchor_forces() const override {
-    std::vector<Vec3> forces = forces_on_holders();
+    const Eigen::VectorXd positions = positions_now();
+    std::vector<Vec3> forces = forces_on_holders(positions);
     forces.resize(scene_.anchors.size());
+    if (soft_) soft_->add_anchor_forces(positions, forces);
     return forces;
   }
 
@@ -130,19 +135,12 @@ class SolidModel : public DeformationModel {
   }
 
  private:
-  // Of held nodes, and of the tools' ends of pads.
-  struct Motion {
-    Eigen::VectorXd nodes, pads;
-    bool is_zero() const { return nodes.isZero(0.0) && pads.isZero(0.0); }
-  };
-
   void make_tissue(EffectCosts& costs, int threads) {
-    EffectCost* const cost = costs.of(Effect::kDensityResponse);
+    EffectCost* const cost = costs.of<DensityResponseOptions>();
     const CostClock clock(cost);
     std::size_t bytes = 0;
     if (scene_.model == Model::kMassSpring) {
-      const std::vector<double> young = young_of(scene_.material, body_);
-      tissue_ = std::make_unique<SpringEnergy>(elements_, young);
+      tissue_ = std::make_unique<SpringEnergy>(elements_, young_);
     } else {
       auto elastic =
           std::make_unique<ElasticEnergy>(elements_, lame_of(scene_.material, body_),
@@ -151,13 +149,33 @@ class SolidModel : public DeformationModel {
       elastic_ = elastic.get();
       tissue_ = std::move(elastic);
     }
+    is_quadratic_ = scene_.model == Model::kLinear;
     if (cost != nullptr) cost->bytes = bytes;
+  }
+
+  void make_effect(std::size_t number, EffectCost& cost) {
+    const Effect& effect = scene_.effects[number];
+    if (effect.kind().make == nullptr) return;
+    const CostClock clock(&cost);
+    effects_.push_back(effect.kind().make(effect, {scene_, body_, elements_, young_}));
+    cost.bytes = effects_.back()->bytes();
+    add_part(*effects_.back(), &cost);
+  }
+
+  void add_part(SolidEffect& effect, EffectCost* cost) {
+    parts_.push_back({&effect, cost});
+    if (const Energy* const energy = effect.energy()) {
+      counted_.push_back(std::make_unique<CountedEnergy>(*energy, cost));
+      potentials_.push_back(counted_.back().get());
+      is_quadratic_ = is_quadratic_ && effect.is_quadratic();
+    }
+    if (effect.link() != nullptr) links_.push_back(effect.link());
   }
 
   static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
     std::vector<int> holders = anchors_of_vertices(body, scene.anchors);
     // What has inertia may fly.
-    if (!scene.has(Effect::kInertia)) require_held(body, holders, beds_of(body, scene.anchors));
+    if (!scene.has<InertiaOptions>()) require_held(body, holders, beds_of(body, scene.anchors));
     return holders;
   }
 
@@ -167,30 +185,45 @@ class SolidModel : public DeformationModel {
     return sum;
   }
 
-  std::vector<Vec3> forces_on_holders() const {
-    const Eigen::VectorXd positions = positions_now();
-    std::vector<Vec3> forces = held_.forces(equilibrium_->gradient(positions));
-    if (soft_) soft_->add_forces(positions, forces);
-    return forces;
+  // Anchors first, then tools, of what they hold.
+  std::vector<Vec3> forces_on_holders(const Eigen::VectorXd& positions) const {
+    return held_.forces(equilibrium_->gradient(positions));
   }
 
-  // Finds the equilibrium with the tools where they are.
-  void settle(const ToolPoses& tools, bool regrip) {
+  // Finds the equilibrium with the tools where they are, or as far on their way as there is one.
+  void settle(const ToolPoses& tools, bool changes) {
     positions_ = positions_now();
     response_.reset();
-    if (regrip) equilibrium_->hold(held_.flags());
-    Motion motion = {held_.motion_to(tools, positions_), {}};
-    if (soft_) motion.pads = soft_->motion_to(tools);
-    if (regrip || !settled_ || !motion.is_zero()) move(motion);
-    last_tools_ = tools;
+    bool must_solve = changes || !settled_;
+    const StepReport before = std::exchange(report_, {});
+    bool has_solved = false;
+    settled_ = true;
+    double part = 0.0;
+    for (int stride = 0; stride < kMaxStrides && part < 1.0 && settled_; ++stride) {
+      part = actions_->stride(tools, positions_);
+      if (part < kShortestStride) break;
+      const Eigen::VectorXd there = positions_;
+      settled_ =
+          advance(between(actions_->reached(), tools, part), must_solve, kMaxHalvings, has_solved);
+      if (!settled_) positions_ = there;
+      must_solve = false;
+    }
+    if (!has_solved) {
+      // Nothing moved that tissue feels.
+      report_.energy = before.energy;
+      report_.solver = before.solver;
+    }
+    report_.not_converged = !settled_;
+    take_state();
   }
 
   // Small strain: where the tools go decides where everything goes, and nothing is solved.
   void superpose(const ToolPoses& tools) {
     if (!held_.any_grip()) return;
-    if (!response_) response_.emplace(*equilibrium_, held_, positions_, last_tools_);
+    if (!response_) response_.emplace(*equilibrium_, held_, positions_, actions_->reached());
     response_->follow(tools, state_.positions);
     held_.place(tools, state_.positions);
+    actions_->set_reached(tools);
     report_.iterations = 0;
     report_.energy = response_->energy();
   }
@@ -198,21 +231,10 @@ class SolidModel : public DeformationModel {
   // Of all nodes, also after a superposition.
   Eigen::VectorXd positions_now() const { return response_ ? response_->positions() : positions_; }
 
-  void move(const Motion& motion) {
-    const Eigen::VectorXd before = positions_;
-    report_ = {};
-    settled_ = advance(motion, kMaxHalvings) && positions_.allFinite();
-    report_.not_converged = !settled_;
-    if (!settled_) positions_ = before;
-    take_state();
-  }
-
   // Goes on in time while the tools move to where they are.
   void swing(const ToolPoses& tools, double dt) {
-    const EquilibriumReport found = dynamics_->advance(
-        *equilibrium_,
-        [&](const Eigen::VectorXd& positions) { return held_.motion_to(tools, positions); }, dt,
-        positions_);
+    const EquilibriumReport found =
+        dynamics_->advance(*equilibrium_, *actions_, tools, dt, positions_);
     report_ = {};
     report_.iterations = found.iterations;
     report_.residual = found.residual;
@@ -226,22 +248,45 @@ class SolidModel : public DeformationModel {
     }
   }
 
-  // Moves what is held by `motion` and lets the rest settle; in two halves where that fails.
-  bool advance(const Motion& motion, int halvings) {
+  // Moves the tools there and lets the rest settle; in two halves where that fails. If the second
+  // fails, the tools stay where the first took them.
+  bool advance(const ToolPoses& tools, bool must_solve, int halvings, bool& has_solved) {
     const Eigen::VectorXd before = positions_;
-    if (!motion.nodes.isZero(0.0)) equilibrium_->follow(positions_, motion.nodes);
-    if (soft_) soft_->move(motion.pads);
-    const EquilibriumReport found = equilibrium_->solve(positions_, scene_.solver);
-    report_.iterations += found.iterations;
+    const ToolPoses tools_before = actions_->reached();
+    const Eigen::VectorXd motion = actions_->follow(tools, positions_);
+    const bool moves = !motion.isZero(0.0);
+    if (!moves && !actions_->changed() && !must_solve) return true;
+    has_solved = true;
+    if (moves) equilibrium_->follow(positions_, motion);
+    if (solve()) return true;
+    actions_->follow(tools_before, before);
+    positions_ = before;
+    if (halvings == 0 || !(moves || actions_->changed())) return false;
+    return advance(between(tools_before, tools, 0.5), must_solve, halvings - 1, has_solved) &&
+           advance(tools, false, halvings - 1, has_solved);
+  }
+
+  bool solve() {
+    EquilibriumReport found;
+    do {
+      found = equilibrium_->solve(positions_, scene_.solver);
+      report_.iterations += found.iterations;
+    } while (found.converged && actions_->refine(positions_));
     report_.residual = found.residual;
     report_.solver = equilibrium_->solver_name();
     report_.energy = found.energy;
-    if (found.converged) return true;
-    if (soft_) soft_->move(-motion.pads);
-    if (halvings == 0 || motion.is_zero()) return false;
-    positions_ = before;
-    const Motion half = {0.5 * motion.nodes, 0.5 * motion.pads};
-    return advance(half, halvings - 1) && advance(half, halvings - 1);
+    return found.converged && positions_.allFinite() && actions_->accepts(positions_);
+  }
+
+  void finish(const ToolPoses& tools, bool is_superposed) {
+    const Eigen::VectorXd positions = positions_now();
+    const SolidView view = {tools, positions, *equilibrium_, held_, links_, is_superposed};
+    for (const ToolActions::Part& part : parts_) {
+      const CostClock clock(part.cost);
+      part.effect->after_step(view);
+      part.effect->report(report_);
+      if (part.cost != nullptr) part.cost->bytes = part.effect->bytes();
+    }
   }
 
   void take_state() {
@@ -256,24 +301,29 @@ class SolidModel : public DeformationModel {
   const SceneDescription& scene_;
   const Body& body_;
   FiniteElements elements_;
+  // Of each tet [Pa].
+  std::vector<double> young_;
   HeldNodes held_;
   // What the tissue stores; as a solid, if it is one.
   std::unique_ptr<const Energy> tissue_;
   const ElasticEnergy* elastic_ = nullptr;
-  std::optional<GravityEnergy> gravity_;
   std::optional<SoftHolds> soft_;
-  std::optional<CountedEnergy> counted_gravity_;
-  // Of all of them.
+  std::vector<std::unique_ptr<SolidEffect>> effects_;
+  // Soft holds and effects, their energies and links.
+  std::vector<ToolActions::Part> parts_;
+  std::vector<std::unique_ptr<CountedEnergy>> counted_;
+  std::vector<const ToolLink*> links_;
+  // All energies but those of inertia and damping, and whether they are quadratic.
   std::vector<const Energy*> potentials_;
+  bool is_quadratic_ = false;
   std::unique_ptr<Dynamics> dynamics_;
   // Of all nodes.
   Eigen::VectorXd rest_, positions_;
   State state_;
   std::unique_ptr<Equilibrium> equilibrium_;
-  std::optional<ForceFeedback> feedback_;
+  std::optional<ToolActions> actions_;
   // For small strain, while what the tools hold stays the same.
   std::optional<ToolResponse> response_;
-  ToolPoses last_tools_;
   StepReport report_;
   bool settled_ = true;
 };

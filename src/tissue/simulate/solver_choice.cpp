@@ -17,12 +17,12 @@ Constitution constitution_of(Model model) {
 
 std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
                                              const FiniteElements& elements,
-                                             std::vector<const Energy*> energies, const Run& run) {
+                                             std::vector<const Energy*> energies, bool is_quadratic,
+                                             const Run& run) {
   constexpr std::size_t kFewNodes = 500;
   const LinearSystemMaker direct = [&elements] { return direct_system(elements); };
-  const bool is_linear = scene.model == Model::kLinear;
   std::unique_ptr<LinearSystem> iterative;
-  if (elements.node_count() >= kFewNodes && (!is_linear || scene.has(Effect::kInertia))) {
+  if (elements.node_count() >= kFewNodes && (!is_quadratic || scene.has<InertiaOptions>())) {
     // What Newton's iterations need; their own tolerance may be finer.
     constexpr double kTolerance = 1e-3;
     iterative = elements.order() == 1
@@ -30,10 +30,10 @@ std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
                     : quadratic_system(elements, constitution_of(scene.model), kTolerance, run);
   }
   if (!iterative) {
-    return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr, is_linear);
+    return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr, is_quadratic);
   }
   return std::make_unique<Equilibrium>(std::move(energies), std::move(iterative), direct,
-                                       is_linear);
+                                       is_quadratic);
 }
 
 }  // namespace tissue

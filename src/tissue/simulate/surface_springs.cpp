@@ -30,47 +30,22 @@ void for_each_part(const Body& body) {
 }  // namespace
 
 SurfaceSprings::SurfaceSprings(const FiniteElements& elements, const Body& body)
-    : triangles_(body.surface) {
-  if (elements.order() == 2) {
-    // Each becomes four, with the midpoints of its edges.
-    std::map<Edge, std::uint32_t> midpoint;
-    for (std::uint32_t i = 0; i < elements.midpoints().size(); ++i) {
-      const auto ends = std::minmax(elements.midpoints()[i][0], elements.midpoints()[i][1]);
-      midpoint[{ends.first, ends.second}] = static_cast<std::uint32_t>(elements.vertex_count()) + i;
-    }
-    triangles_.clear();
-    for (const Triangle& corners : body.surface) {
-      Triangle middles{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto ends = std::minmax(corners[(k + 1) % 3], corners[(k + 2) % 3]);
-        middles[k] = midpoint.at({ends.first, ends.second});
-      }
-      triangles_.push_back(middles);
-      for (std::size_t k = 0; k < 3; ++k) {
-        triangles_.push_back({corners[k], middles[(k + 2) % 3], middles[(k + 1) % 3]});
-      }
-    }
-  }
-  for (const Triangle& t : triangles_) {
-    const Vec3& origin = elements.rest()[t[0]];
-    areas_.push_back(0.5 *
-                     (elements.rest()[t[1]] - origin).cross(elements.rest()[t[2]] - origin).norm());
-  }
-}
+    : surface_(elements, body) {}
 
 void SurfaceSprings::attach(std::size_t holder, const Eigen::VectorXd& positions,
                             const std::function<double(const Vec3&)>& stiffness_at) {
   std::map<std::uint32_t, double> stiffness;
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+  for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
     std::array<Vec3, 3> corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = node(positions, triangles_[t][k]);
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = node(positions, surface_.triangles[t][k]);
     std::array<double, 3> sums{};
     for_each_part([&](const std::array<double, 3>& w) {
       const double here = stiffness_at(w[0] * corners[0] + w[1] * corners[1] + w[2] * corners[2]);
       for (std::size_t k = 0; k < 3; ++k) sums[k] += w[k] * here;
     });
     for (std::size_t k = 0; k < 3; ++k) {
-      if (sums[k] > 0.0) stiffness[triangles_[t][k]] += areas_[t] / (kParts * kParts) * sums[k];
+      if (sums[k] > 0.0)
+        stiffness[surface_.triangles[t][k]] += surface_.areas[t] / (kParts * kParts) * sums[k];
     }
   }
   for (const auto& [i, k] : stiffness) springs_.push_back({holder, i, k, node(positions, i)});

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "node_surface.h"
 #include "tissue/simulate/energy.h"
-#include "tissue/simulate/finite_elements.h"
 
 #include <functional>
 
@@ -42,9 +42,7 @@ class SurfaceSprings : public Energy {
   Vec3 force(std::size_t holder, const Eigen::VectorXd& positions) const;
 
  private:
-  // The surface in linear triangles over all nodes, and their areas at rest [m²].
-  std::vector<Triangle> triangles_;
-  std::vector<double> areas_;
+  NodeSurface surface_;
   std::vector<Spring> springs_;
 };
 

@@ -1,5 +1,7 @@
 #include "tissue/simulate/surface_touch.h"
 
+#include "closest_points.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -50,22 +52,8 @@ std::optional<std::uint32_t> SurfaceTouch::target(const Vec3& centre, double rad
 }
 
 double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return ap.norm();
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return bp.norm();
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return cp.norm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return (ap - d1 / (d1 - d3) * ab).norm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return (ap - d2 / (d2 - d6) * ac).norm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    return (bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b)).norm();
-  }
-  return std::abs(ap.dot(ab.cross(ac).normalized()));
+  const std::array<double, 3> w = closest_in_triangle(p, a, b, c);
+  return (p - w[0] * a - w[1] * b - w[2] * c).norm();
 }
 
 }  // namespace tissue

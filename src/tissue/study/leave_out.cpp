@@ -21,31 +21,24 @@ double mean_young(const Material& material, const Body& body) {
   return sum / volume;
 }
 
-void erase(std::vector<Effect>& effects, Effect effect) {
-  effects.erase(std::remove(effects.begin(), effects.end(), effect), effects.end());
+template <class Which>
+void erase_if(std::vector<Effect>& effects, const Which& which) {
+  effects.erase(std::remove_if(effects.begin(), effects.end(), which), effects.end());
 }
 
 }  // namespace
 
-SceneDescription leave_out(SceneDescription scene, Effect effect, const Body& body) {
+SceneDescription leave_out(SceneDescription scene, const std::string& effect, const Body& body) {
   if (!scene.has(effect)) {
     throw InputError(ErrorCode::kParam,
-                     "without: scene " + scene.name + " does not name " + name(effect));
+                     "without: scene " + scene.name + " does not name " + effect);
   }
-  erase(scene.effects, effect);
-  switch (effect) {
-    case Effect::kDensityResponse:
-      scene.push.density_response = false;
-      if (scene.model != Model::kClosedForm) {
-        scene.material.young = {{0.0, mean_young(scene.material, body)}};
-      }
-      break;
-    case Effect::kRecovery: scene.recovery_time.reset(); break;
-    case Effect::kFoldGuard: scene.fold_guard = false; break;
-    case Effect::kInertia: erase(scene.effects, Effect::kDamping); break;
-    case Effect::kGravity:
-    case Effect::kDamping:
-    case Effect::kForceFeedback: break;
+  const bool responds = scene.has<DensityResponseOptions>();
+  erase_if(scene.effects, [&](const Effect& one) { return effect == one.name(); });
+  // What makes no sense without it goes with it.
+  erase_if(scene.effects, [&](const Effect& one) { return !objection_to(one, scene).empty(); });
+  if (responds && !scene.has<DensityResponseOptions>() && scene.model != Model::kClosedForm) {
+    scene.material.young = {{0.0, mean_young(scene.material, body)}};
   }
   return scene;
 }

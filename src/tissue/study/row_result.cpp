@@ -56,10 +56,10 @@ SceneDescription scene_for(const StudyProblem& problem, const StudyRow& row, con
   if (row.purpose == RowPurpose::kReference || row.purpose == RowPurpose::kCheck) {
     scene.solver.tolerance = std::min(scene.solver.tolerance, kReferenceTolerance);
   }
-  for (const Effect effect : scene.effects) {
-    if (can_have(row.model, effect)) continue;
+  for (const Effect& effect : scene.effects) {
+    if (can_have(row.model, effect.name())) continue;
     throw InputError(ErrorCode::kScene, std::string("model ") + name(row.model) +
-                                            " cannot have the effect " + name(effect));
+                                            " cannot have the effect " + effect.name());
   }
   return row.without ? leave_out(scene, *row.without, body) : scene;
 }
@@ -148,7 +148,7 @@ void simulate(const Study& study, const StudyRow& row, const SamplePoints& point
   result.bytes = memory.bytes();
   result.setup_seconds = making + record.seconds.front();
   std::vector<double> seconds;
-  const bool swings = description.has(Effect::kInertia) || description.has(Effect::kRecovery);
+  const bool swings = description.has<InertiaOptions>() || description.has<RecoveryOptions>();
   for (std::size_t i = 0; i < instants.size(); ++i) {
     if (moves(instants, i, swings)) seconds.push_back(record.seconds[i]);
   }

@@ -35,7 +35,7 @@ std::string describe(const Study& study, const StudyRow& row) {
          study.problems[row.problem].name + ", " + study.meshes[row.mesh].name + ", " +
          std::to_string(row.tetrahedra) + " tets, " + name(row.model) + " of order " +
          std::to_string(row.element_order) +
-         (row.without ? std::string(", without ") + name(*row.without) : "");
+         (row.without ? std::string(", without ") + *row.without : "");
 }
 
 std::string source_of(const Study& study, const StudyRow& row) {

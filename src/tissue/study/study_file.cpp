@@ -88,7 +88,7 @@ class StudyFile {
     }
     if (reader.has("tissue")) problem.tissue = reader.at("tissue").number(-kHuge, kHuge);
     if (reader.has("young")) {
-      scene.material.young = young_from(reader.at("young"), scene.has(Effect::kDensityResponse));
+      scene.material.young = young_from(reader.at("young"), scene.has<DensityResponseOptions>());
     }
     study_.problems.push_back(std::move(problem));
   }
@@ -218,7 +218,7 @@ class StudyFile {
             for (const int order : orders) {
               row.model = model;
               row.element_order = order;
-              for (const std::optional<Effect>& effect : left_out(combination, scene)) {
+              for (const std::optional<std::string>& effect : left_out(combination, scene)) {
                 row.without = effect;
                 rows.push_back(row);
               }
@@ -231,22 +231,22 @@ class StudyFile {
   }
 
   // `nothing`, the name of an effect, or `each` for all that the scene names, one at a time.
-  static std::vector<std::optional<Effect>> left_out(const YamlReader& combination,
-                                                     const SceneDescription& scene) {
+  static std::vector<std::optional<std::string>> left_out(const YamlReader& combination,
+                                                          const SceneDescription& scene) {
     if (!combination.has("without")) return {std::nullopt};
-    std::vector<std::optional<Effect>> result;
+    std::vector<std::optional<std::string>> result;
     for (const YamlReader& entry : combination.at("without").entries()) {
       const std::string word = entry.word();
       if (word == "nothing") {
         result.push_back(std::nullopt);
       } else if (word == "each") {
-        for (const Effect effect : scene.effects) result.push_back(effect);
+        for (const Effect& effect : scene.effects) result.push_back(effect.name());
       } else {
-        const auto& all = all_effects();
-        const auto found = std::find_if(all.begin(), all.end(),
-                                        [&](Effect effect) { return word == name(effect); });
-        if (found == all.end()) entry.refuse("'" + word + "' is not nothing, each or an effect");
-        result.push_back(*found);
+        const std::vector<std::string> all = effect_names();
+        if (std::find(all.begin(), all.end(), word) == all.end()) {
+          entry.refuse("'" + word + "' is not nothing, each or an effect");
+        }
+        result.push_back(word);
       }
     }
     return result;

@@ -78,7 +78,7 @@ std::string line_of(const Study& study, const Results& results, std::size_t i) {
   line.count(i).add(std::string(name(row.purpose))).add(study.problems[row.problem].name);
   line.add(study.meshes[row.mesh].name).add(std::string(name(row.model)));
   line.count(static_cast<std::uint64_t>(row.element_order));
-  line.add(std::string(row.without ? name(*row.without) : "")).count(row.tetrahedra);
+  line.add(row.without.value_or("")).count(row.tetrahedra);
   line.count(result.tetrahedra).count(result.vertices).count(result.nodes);
   line.add(std::string(status)).add(result.failure);
   line.add(percent(of(error, &Difference::displacement))).add(of(error, &Difference::tumour));
