@@ -13,6 +13,17 @@ template <class L>
 struct MaterialTensorOf;
 using MaterialTensor = MaterialTensorOf<Lanes>;
 
+/// A matrix Σ r rᵀ: rows r over the nodes, three numbers each, of which most are zero.
+struct SquareSum {
+  /// Of each row, and the end of the last.
+  std::vector<std::uint32_t> begin;
+  std::vector<std::uint32_t> nodes;
+  std::vector<Vec3> values;
+
+  /// result += Σ r rᵀ x
+  void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
+};
+
 /// What takes the second derivatives of energies by the positions of nodes [N/m], and keeps as much
 /// of them as it is for: a matrix, a product.
 class Hessian {
@@ -26,6 +37,9 @@ class Hessian {
   /// element's volume: pack by pack and point by point, from the first pack on. An energy adds all
   /// of its elements, pieces of them in order.
   virtual void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) = 0;
+  /// Adds rows that reach farther than elements. Throws std::logic_error where there is no room for
+  /// them.
+  virtual void add_squares(const SquareSum& squares);
 };
 
 }  // namespace tissue

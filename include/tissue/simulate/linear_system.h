@@ -30,6 +30,8 @@ class LinearSystem : public Hessian {
   /// A x = b. All coordinates, of which fixed ones are not looked at and answered with zero. False
   /// if no x was found.
   virtual bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) = 0;
+  /// z = M⁻¹ r with an M near A: what conjugate gradients over A go by. False if there is none.
+  virtual bool precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) = 0;
   /// Forgets what it kept of earlier matrices to be quicker with the next: its answers are then
   /// those of a new one, to the last bit.
   virtual void forget() {}

@@ -22,6 +22,8 @@ struct EffectKind {
   std::string (*objection)(const SceneDescription& scene) = nullptr;
   /// What it is in a solid; nothing where the solid itself asks for its parameters.
   std::unique_ptr<SolidEffect> (*make)(const Effect& effect, const SolidParts& solid) = nullptr;
+  /// What it leaves elements to store themselves; nothing where that is all.
+  std::vector<Lame> (*local_part)(std::vector<Lame> lame) = nullptr;
 };
 
 /// Nothing if there is none of that name.

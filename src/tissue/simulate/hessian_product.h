@@ -19,6 +19,7 @@ class HessianProduct : public Hessian {
   void add(std::uint32_t a, std::uint32_t b, const Mat3& block) override;
   void add_mass(const MassMatrix& mass, double factor) override;
   void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) override;
+  void add_squares(const SquareSum& squares) override { squares.multiply_add(x_, result_); }
 
  private:
   template <int order>

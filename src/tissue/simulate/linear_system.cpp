@@ -28,6 +28,9 @@ class DirectSystem : public LinearSystem {
     return solver_->prepare(hessian_.matrix(), fixed, shift);
   }
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override { return solver_->solve(b, x); }
+  bool precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) override {
+    return solver_->solve(r, z);
+  }
 
  private:
   AssembledHessian hessian_;

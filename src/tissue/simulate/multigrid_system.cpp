@@ -54,15 +54,21 @@ class MultigridSystem : public LinearSystem {
             multiply(from, product);
             clear_fixed(product);
           },
-          [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) { precondition(residual, z); },
+          [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
+            precondition_places(residual, z);
+          },
           found);
     });
-    if (!found_it) return false;
-    x.resize(b.size());
-    for (std::size_t place = 0; place < hierarchy_.node_at.size(); ++place) {
-      x.segment<3>(3 * Eigen::Index{hierarchy_.node_at[place]}) =
-          found.segment<3>(static_cast<Eigen::Index>(3 * place));
-    }
+    if (found_it) from_places(found, x);
+    return found_it;
+  }
+
+  bool precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) override {
+    Eigen::VectorXd there(r.size()), found;
+    to_places(r, there);
+    clear_fixed(there);
+    precondition_places(there, found);
+    from_places(found, z);
     return true;
   }
 
@@ -78,12 +84,20 @@ class MultigridSystem : public LinearSystem {
     }
   }
 
+  void from_places(const Eigen::VectorXd& there, Eigen::VectorXd& x) const {
+    x.resize(there.size());
+    for (std::size_t place = 0; place < hierarchy_.node_at.size(); ++place) {
+      x.segment<3>(3 * Eigen::Index{hierarchy_.node_at[place]}) =
+          there.segment<3>(static_cast<Eigen::Index>(3 * place));
+    }
+  }
+
   void clear_fixed(Eigen::VectorXd& vector) const {
     for (const std::uint32_t i : multigrid_.fixed()) vector[i] = 0.0;
   }
 
   // z = M⁻¹ r, scaled so that single precision neither overflows nor vanishes.
-  void precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
+  void precondition_places(const Eigen::VectorXd& r, Eigen::VectorXd& z) {
     const double scale = r.norm();
     Eigen::Map<Eigen::VectorXf>(multigrid_.right().data(), r.size()) = (r / scale).cast<float>();
     multigrid_.cycle();

@@ -135,9 +135,18 @@ class QuadraticSystem : public LinearSystem {
             multiply_add(from.data(), product.data());
             clear_fixed(product);
           },
-          [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) { precondition(residual, z); },
+          [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
+            precondition_free(residual, z);
+          },
           x);
     });
+  }
+
+  bool precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) override {
+    Eigen::VectorXd free = r;
+    clear_fixed(free);
+    precondition_free(free, z);
+    return true;
   }
 
  private:
@@ -214,7 +223,7 @@ class QuadraticSystem : public LinearSystem {
   }
 
   // z = M⁻¹ r, scaled so that single precision neither overflows nor vanishes.
-  void precondition(const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
+  void precondition_free(const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
     const double scale = residual.norm();
     right_ = (residual / scale).cast<float>();
     x_.setZero(right_.size());

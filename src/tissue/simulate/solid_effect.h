@@ -49,6 +49,8 @@ class SolidEffect {
   virtual const Energy* energy() const { return nullptr; }
   /// Whether that is at most quadratic in the positions.
   virtual bool is_quadratic() const { return true; }
+  /// Whether its Hessian reaches farther than elements.
+  virtual bool adds_squares() const { return false; }
   /// Whether it moves a body that is at rest.
   virtual bool loads() const { return energy() != nullptr; }
 

@@ -51,8 +51,7 @@ class SolidModel : public DeformationModel {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
       for (const Energy* energy : dynamics_->energies()) energies.push_back(energy);
     }
-    equilibrium_ =
-        equilibrium_for(scene, elements_, std::move(energies), is_quadratic_, run_on(threads));
+    equilibrium_ = equilibrium_for(scene, elements_, std::move(energies), needs_, run_on(threads));
     actions_.emplace(scene.tools, held_, parts_);
     reset();
   }
@@ -60,7 +59,8 @@ class SolidModel : public DeformationModel {
   StepReport step(const ToolPoses& tools, double dt) override {
     const bool changes = actions_->take(tools, state_.positions, positions_now());
     if (actions_->regrips()) equilibrium_->hold(held_.flags());
-    const bool is_linear = is_quadratic_ && !dynamics_, keeps = is_linear && !changes && settled_;
+    const bool is_linear = needs_.is_quadratic && !dynamics_,
+               keeps = is_linear && !changes && settled_;
     if (dynamics_) {
       if (dt > 0.0) swing(tools, dt);
     } else if (keeps && !(soft_ && soft_->any_pad())) {
@@ -142,15 +142,22 @@ class SolidModel : public DeformationModel {
     if (scene_.model == Model::kMassSpring) {
       tissue_ = std::make_unique<SpringEnergy>(elements_, young_);
     } else {
-      auto elastic =
-          std::make_unique<ElasticEnergy>(elements_, lame_of(scene_.material, body_),
-                                          constitution_of(scene_.model), run_on(threads));
+      auto elastic = std::make_unique<ElasticEnergy>(
+          elements_, local_lame(), constitution_of(scene_.model), run_on(threads));
       bytes = elastic->bytes();
       elastic_ = elastic.get();
       tissue_ = std::move(elastic);
     }
-    is_quadratic_ = scene_.model == Model::kLinear;
+    needs_.is_quadratic = scene_.model == Model::kLinear;
     if (cost != nullptr) cost->bytes = bytes;
+  }
+
+  std::vector<Lame> local_lame() const {
+    std::vector<Lame> lame = lame_of(scene_.material, body_);
+    for (const Effect& effect : scene_.effects) {
+      if (effect.kind().local_part != nullptr) lame = effect.kind().local_part(std::move(lame));
+    }
+    return lame;
   }
 
   void make_effect(std::size_t number, EffectCost& cost) {
@@ -167,7 +174,8 @@ class SolidModel : public DeformationModel {
     if (const Energy* const energy = effect.energy()) {
       counted_.push_back(std::make_unique<CountedEnergy>(*energy, cost));
       potentials_.push_back(counted_.back().get());
-      is_quadratic_ = is_quadratic_ && effect.is_quadratic();
+      needs_.is_quadratic = needs_.is_quadratic && effect.is_quadratic();
+      needs_.adds_squares = needs_.adds_squares || effect.adds_squares();
     }
     if (effect.link() != nullptr) links_.push_back(effect.link());
   }
@@ -313,9 +321,9 @@ class SolidModel : public DeformationModel {
   std::vector<ToolActions::Part> parts_;
   std::vector<std::unique_ptr<CountedEnergy>> counted_;
   std::vector<const ToolLink*> links_;
-  // All energies but those of inertia and damping, and whether they are quadratic.
+  // All energies but those of inertia and damping, and what they ask of a linear system.
   std::vector<const Energy*> potentials_;
-  bool is_quadratic_ = false;
+  SystemNeeds needs_;
   std::unique_ptr<Dynamics> dynamics_;
   // Of all nodes.
   Eigen::VectorXd rest_, positions_;

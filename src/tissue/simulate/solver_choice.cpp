@@ -1,5 +1,6 @@
 #include "solver_choice.h"
 
+#include "squared_system.h"
 #include "tissue/simulate/multigrid_system.h"
 #include "tissue/simulate/quadratic_system.h"
 
@@ -17,23 +18,31 @@ Constitution constitution_of(Model model) {
 
 std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
                                              const FiniteElements& elements,
-                                             std::vector<const Energy*> energies, bool is_quadratic,
-                                             const Run& run) {
+                                             std::vector<const Energy*> energies,
+                                             const SystemNeeds& needs, const Run& run) {
   constexpr std::size_t kFewNodes = 500;
-  const LinearSystemMaker direct = [&elements] { return direct_system(elements); };
+  // What Newton's iterations need, their own tolerance may be finer; and what a factorisation
+  // gives.
+  constexpr double kTolerance = 1e-3, kDirectTolerance = 1e-9;
+  const auto with_squares = [needs](std::unique_ptr<LinearSystem> system, double tolerance) {
+    return needs.adds_squares ? squared_system(std::move(system), tolerance) : std::move(system);
+  };
+  const LinearSystemMaker direct = [&elements, with_squares] {
+    return with_squares(direct_system(elements), kDirectTolerance);
+  };
   std::unique_ptr<LinearSystem> iterative;
-  if (elements.node_count() >= kFewNodes && (!is_quadratic || scene.has<InertiaOptions>())) {
-    // What Newton's iterations need; their own tolerance may be finer.
-    constexpr double kTolerance = 1e-3;
+  if (elements.node_count() >= kFewNodes && (!needs.is_quadratic || scene.has<InertiaOptions>())) {
     iterative = elements.order() == 1
                     ? multigrid_system(elements, kTolerance, run)
                     : quadratic_system(elements, constitution_of(scene.model), kTolerance, run);
   }
   if (!iterative) {
-    return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr, is_quadratic);
+    return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr,
+                                         needs.is_quadratic);
   }
-  return std::make_unique<Equilibrium>(std::move(energies), std::move(iterative), direct,
-                                       is_quadratic);
+  return std::make_unique<Equilibrium>(std::move(energies),
+                                       with_squares(std::move(iterative), kTolerance), direct,
+                                       needs.is_quadratic);
 }
 
 }  // namespace tissue

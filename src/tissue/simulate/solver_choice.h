@@ -9,12 +9,18 @@ namespace tissue {
 
 Constitution constitution_of(Model model);
 
+/// What a scene's energies ask of a linear system.
+struct SystemNeeds {
+  bool is_quadratic = false;
+  bool adds_squares = false;
+};
+
 /// What finds a scene's equilibria or steps: one factorisation that serves all of them where the
-/// model is linear and at rest, or for each what is cheapest. `is_quadratic`: whether all energies
-/// are. `elements` and `energies` must outlive it.
+/// model is linear and at rest, or for each what is cheapest. `elements` and `energies` must
+/// outlive it.
 std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
                                              const FiniteElements& elements,
-                                             std::vector<const Energy*> energies, bool is_quadratic,
-                                             const Run& run);
+                                             std::vector<const Energy*> energies,
+                                             const SystemNeeds& needs, const Run& run);
 
 }  // namespace tissue

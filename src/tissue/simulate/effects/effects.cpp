@@ -4,14 +4,15 @@
 #include <stdexcept>
 
 // A line for each effect, in the order in which tables have them.
-#define TISSUE_EFFECTS(EFFECT) \
-  EFFECT(density_response)     \
-  EFFECT(recovery)             \
-  EFFECT(fold_guard)           \
-  EFFECT(gravity)              \
-  EFFECT(inertia)              \
-  EFFECT(damping)              \
-  EFFECT(contact)              \
+#define TISSUE_EFFECTS(EFFECT)   \
+  EFFECT(density_response)       \
+  EFFECT(recovery)               \
+  EFFECT(fold_guard)             \
+  EFFECT(gravity)                \
+  EFFECT(inertia)                \
+  EFFECT(damping)                \
+  EFFECT(near_incompressibility) \
+  EFFECT(contact)                \
   EFFECT(force_feedback)
 
 namespace tissue {
