@@ -109,6 +109,7 @@ nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& reco
             {"p99", tissue::percentile(record.seconds, 0.99)},
             {"max", tissue::percentile(record.seconds, 1.0)}}},
           {"effects", effects},
+          {"unknowns", record.last.unknowns},
           {"iterations", record.last.iterations},
           {"residual", record.last.residual},
           {"solver", record.last.solver},

@@ -225,7 +225,8 @@ TEST(SolidScene, WhatAModelCannotHaveIsSaid) {
   EXPECT_EQ(
       refusal([] { scene_of("linear", "", "[recovery]"); }),
       "E_SCENE: scene: line 5, effects[0]: 'recovery' is not an effect of model linear, which "
-      "knows density_response gravity inertia damping near_incompressibility contact force_feedback");
+      "knows density_response gravity inertia damping near_incompressibility "
+      "rigid_inclusions contact force_feedback");
   EXPECT_NE(refusal([] {
               parse_scene("model: linear\ntools: [{name: a, mode: press}]");
             }).find("needs the effect contact"),

@@ -14,7 +14,8 @@ namespace tissue {
 class BlockMatrix {
  public:
   BlockMatrix() = default;
-  /// Nodes of each of `groups`, `group_size` a time, are joined with each other.
+  /// Nodes of each of `groups`, `group_size` a time, are joined with each other; each has a block of
+  /// its own.
   BlockMatrix(std::size_t node_count, const std::vector<std::uint32_t>& groups, int group_size);
 
   void set_zero();

@@ -73,4 +73,10 @@ struct DampingOptions {
   double stiffness = 0.0;
 };
 
+/// `rigid_inclusions`: connected tissue denser than this moves as a rigid body. One that an anchor
+/// or a tool holds anywhere is held by it as a whole.
+struct RigidInclusionsOptions {
+  double density_above = 200.0;
+};
+
 }  // namespace tissue

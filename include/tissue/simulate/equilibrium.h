@@ -8,6 +8,8 @@
 
 namespace tissue {
 
+class RigidMotions;
+
 struct EquilibriumOptions {
   /// Of the residual: the norm of the forces on free nodes, by the largest of those of the forces
   /// that hold fixed ones, that were out of balance at the start, penalties left out, and of the
@@ -30,9 +32,11 @@ class Equilibrium {
  public:
   /// `energies` must outlive this. What `system` cannot solve is left to one that `fallback` makes,
   /// if there is any. Where all energies are quadratic the Hessian is made, and the system
-  /// prepared, once for the same fixed nodes.
+  /// prepared, once for the same fixed nodes. Where not all motions are free, `motions` says which
+  /// are, and systems know of it.
   Equilibrium(std::vector<const Energy*> energies, std::unique_ptr<LinearSystem> system,
-              LinearSystemMaker fallback = {}, bool quadratic = false);
+              LinearSystemMaker fallback = {}, bool quadratic = false,
+              RigidMotions* motions = nullptr);
 
   /// Which nodes do not move by themselves, a flag for each. Throws InputError E_PARAM if all are.
   void hold(const std::vector<std::uint8_t>& fixed_nodes);
@@ -67,6 +71,8 @@ class Equilibrium {
                                          const std::vector<Eigen::VectorXd>& pulls,
                                          std::vector<Eigen::VectorXd>& forces);
 
+  /// How many numbers are to be found.
+  std::size_t unknowns() const;
   /// The method by which linear systems were solved last.
   const char* solver_name() const { return active_->name(); }
 
@@ -87,6 +93,8 @@ class Equilibrium {
   bool solve_for(const Eigen::VectorXd& positions, const Eigen::VectorXd& pull,
                  Eigen::VectorXd& step);
   Eigen::VectorXd penalties(const Eigen::VectorXd& positions) const;
+  Eigen::VectorXd moved(const Eigen::VectorXd& positions, const Eigen::VectorXd& motion) const;
+  void restrict(Eigen::VectorXd& forces) const;
   double norm_of(const Eigen::VectorXd& gradient, bool of_fixed) const;
   bool line_search(const Eigen::VectorXd& step, Eigen::VectorXd& gradient,
                    Eigen::VectorXd& positions, double& energy) const;
@@ -100,6 +108,7 @@ class Equilibrium {
   // Which of them has the Hessian.
   LinearSystem* active_;
   bool quadratic_;
+  RigidMotions* motions_;
   bool is_prepared_ = false;
 };
 

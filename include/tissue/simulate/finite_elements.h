@@ -22,7 +22,8 @@ class FiniteElements {
   static constexpr int kMaxNodes = 10;
 
   /// Throws InputError E_PARAM if `order` is neither 1 nor 2.
-  FiniteElements(const Body& body, int order);
+  /// `rigid` tets have mass, which is shared by their vertices, and are no elements.
+  FiniteElements(const Body& body, int order, const std::vector<Tet>& rigid = {});
 
   int order() const { return order_; }
   std::size_t element_count() const { return element_count_; }
@@ -52,6 +53,9 @@ class FiniteElements {
   Vec3 value_at(std::size_t element, const std::array<double, 4>& barycentric,
                 const Eigen::VectorXd& nodal) const;
 
+  /// A quarter of the rigid tets around each vertex [m³]; empty without any.
+  const std::vector<double>& rigid_volumes() const { return rigid_volumes_; }
+
   /// By how much each node of an element weighs in an integral over it, as a fraction of the
   /// volume: 1/4 each for order 1; −1/20 at corners and 1/5 at midpoints for order 2.
   double node_weight(int local) const { return order_ == 1 ? 0.25 : local < 4 ? -0.05 : 0.2; }
@@ -80,6 +84,7 @@ class FiniteElements {
   std::vector<Vec3> rest_;
   std::vector<std::uint32_t> nodes_;
   std::vector<Edge> midpoints_, parents_;
+  std::vector<double> rigid_volumes_;
   std::vector<Pack> packs_;
 };
 

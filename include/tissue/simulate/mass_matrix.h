@@ -23,6 +23,10 @@ class MassMatrix {
   /// At the vertices: rows' sums of the matrix for order 1.
   double at_vertex(std::size_t vertex) const { return lumped_[vertex]; }
   double density() const { return density_; }
+  /// Of rigid tets at a vertex.
+  double rigid_at_vertex(std::size_t vertex) const {
+    return elements_.rigid_volumes().empty() ? 0.0 : density_ * elements_.rigid_volumes()[vertex];
+  }
   std::size_t bytes() const { return lumped_.size() * sizeof(double); }
 
   /// ∫ N_a N_b over a tet of 10 nodes by 420 / V (Zienkiewicz and Taylor).
@@ -39,6 +43,9 @@ void MassMatrix::for_each_pair(const Body& body) const {
   if (elements_.order() == 1) {
     for (std::uint32_t node = 0; node < lumped_.size(); ++node) body(node, node, lumped_[node]);
     return;
+  }
+  for (std::uint32_t v = 0; v < elements_.rigid_volumes().size(); ++v) {
+    body(v, v, rigid_at_vertex(v));
   }
   for (std::size_t e = 0; e < elements_.element_count(); ++e) {
     const std::uint32_t* nodes = elements_.nodes(e);

@@ -37,6 +37,8 @@ struct StepReport {
   /// No equilibrium was found: the state is the last valid one.
   bool not_converged = false;
   std::size_t moved_vertices = 0;
+  /// Numbers that a step finds; 0 for closed_form.
+  std::size_t unknowns = 0;
   /// Of the solver; 0 and 0 for closed_form.
   int iterations = 0;
   double residual = 0.0;

@@ -9,6 +9,7 @@ BlockMatrix::BlockMatrix(std::size_t node_count, const std::vector<std::uint32_t
                          int group_size) {
   const auto size = static_cast<std::size_t>(group_size);
   std::vector<std::vector<std::uint32_t>> rows(node_count);
+  for (std::uint32_t row = 0; row < node_count; ++row) rows[row].push_back(row);
   for (std::size_t group = 0; group < groups.size(); group += size) {
     for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t j = 0; j < size; ++j) {

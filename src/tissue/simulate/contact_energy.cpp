@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace tissue {
 namespace {
@@ -25,7 +26,12 @@ std::vector<double> young_of_nodes(const FiniteElements& elements,
       shares[elements.nodes(e)[a]] += elements.volume(e);
     }
   }
-  for (std::size_t i = 0; i < sums.size(); ++i) sums[i] /= shares[i];
+  // Rigid tissue has no elements; what touches it need not give way less than what is around it.
+  const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) /
+                      std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    sums[i] = shares[i] > 0.0 ? sums[i] / shares[i] : mean;
+  }
   return sums;
 }
 

@@ -1,6 +1,7 @@
 #include "tissue/simulate/equilibrium.h"
 
 #include "conjugate_gradients.h"
+#include "rigid_inclusions.h"
 #include "tissue/base/error.h"
 
 #include <algorithm>
@@ -25,12 +26,13 @@ double extent(const Eigen::VectorXd& positions) {
 }  // namespace
 
 Equilibrium::Equilibrium(std::vector<const Energy*> energies, std::unique_ptr<LinearSystem> system,
-                         LinearSystemMaker fallback, bool quadratic)
+                         LinearSystemMaker fallback, bool quadratic, RigidMotions* motions)
     : energies_(std::move(energies)),
       system_(std::move(system)),
       make_fallback_(std::move(fallback)),
       active_(system_.get()),
-      quadratic_(quadratic) {}
+      quadratic_(quadratic),
+      motions_(motions) {}
 
 void Equilibrium::hold(const std::vector<std::uint8_t>& fixed_nodes) {
   std::vector<std::uint8_t> coordinates;
@@ -44,9 +46,19 @@ void Equilibrium::hold_coordinates(const std::vector<std::uint8_t>& fixed) {
     throw InputError(ErrorCode::kParam, "anchors: every vertex is held");
   }
   fixed_ = fixed;
+  if (motions_ != nullptr) motions_->hold(fixed);
   is_prepared_ = false;
   system_->forget();
   if (fallback_) fallback_->forget();
+}
+
+std::size_t Equilibrium::unknowns() const {
+  auto free = static_cast<std::size_t>(std::count(fixed_.begin(), fixed_.end(), 0));
+  if (motions_ == nullptr) return free;
+  for (const RigidMotions::Group& group : motions_->groups()) {
+    if (!group.is_held) free -= 3 * group.nodes.size() - 6;
+  }
+  return free;
 }
 
 double Equilibrium::evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
@@ -70,7 +82,25 @@ Eigen::VectorXd Equilibrium::penalties(const Eigen::VectorXd& positions) const {
   return sum;
 }
 
+Eigen::VectorXd Equilibrium::moved(const Eigen::VectorXd& positions,
+                                   const Eigen::VectorXd& motion) const {
+  return motions_ != nullptr ? motions_->moved(positions, motion) : positions + motion;
+}
+
+// To what is free to move.
+void Equilibrium::restrict(Eigen::VectorXd& forces) const {
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
+    if (fixed_[i] != 0) forces[static_cast<Eigen::Index>(i)] = 0.0;
+  }
+  if (motions_ != nullptr) motions_->project(forces);
+}
+
 double Equilibrium::norm_of(const Eigen::VectorXd& gradient, bool of_fixed) const {
+  if (motions_ != nullptr && !of_fixed) {
+    Eigen::VectorXd free = gradient;
+    restrict(free);
+    return free.norm();
+  }
   double sum = 0.0;
   for (std::size_t i = 0; i < fixed_.size(); ++i) {
     const double force = gradient[static_cast<Eigen::Index>(i)];
@@ -87,6 +117,7 @@ double Equilibrium::prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* g
   if (quadratic_ && is_prepared_) return evaluate(positions, gradient, nullptr);
   active_ = system_.get();
   active_->set_zero();
+  if (motions_ != nullptr) motions_->look_at(positions);
   const double energy = evaluate(positions, gradient, active_);
   is_prepared_ = prepare_active() || use_fallback(positions);
   return energy;
@@ -140,7 +171,7 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, Eigen::VectorXd& grad
   const double longest = quadratic_ ? 1.0 : kLongestStep * size / farthest;
   Eigen::VectorXd there, gradient_there;
   for (double length = std::min(1.0, longest); length > 1e-10; length *= 0.5) {
-    there = positions + length * step;
+    there = moved(positions, length * step);
     gradient_there.setZero(positions.size());
     const double energy_there = evaluate(there, &gradient_there, nullptr);
     const bool lower = energy_there <= energy_now + kArmijo * length * slope;
@@ -192,22 +223,17 @@ std::vector<Eigen::VectorXd> Equilibrium::responses(const Eigen::VectorXd& posit
   constexpr double kTolerance = 1e-4;
   prepare(positions, nullptr);
   if (!is_prepared_) return {};
-  const auto clear_fixed = [&](Eigen::VectorXd& vector) {
-    for (std::size_t i = 0; i < fixed_.size(); ++i) {
-      if (fixed_[i] != 0) vector[static_cast<Eigen::Index>(i)] = 0.0;
-    }
-  };
   std::vector<Eigen::VectorXd> answers;
   forces.clear();
   for (std::size_t k = 0; k < motions.size(); ++k) {
     Eigen::VectorXd pull = -pulls[k] - gradient_change(positions, motions[k]), step;
-    clear_fixed(pull);
+    restrict(pull);
     bool is_solved = true;
     const int iterations = conjugate_gradients(
         pull, kTolerance,
         [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
           product = gradient_change(positions, from);
-          clear_fixed(product);
+          restrict(product);
         },
         [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
           is_solved = is_solved && solve_for(positions, -residual, z);
@@ -236,14 +262,14 @@ EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
   if (!solve_for(positions, pull, step)) return report;
   active_->multiply_add(step, pull);
   report.residual = before > 0.0 ? norm_of(pull, false) / before : 0.0;
-  positions += motion + step;
+  positions = moved(positions, motion + step);
   report.energy = energy(positions);
   report.converged = positions.allFinite() && report.energy <= allowed;
   return report;
 }
 
 void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion) {
-  positions += response(positions, motion);
+  positions = moved(positions, response(positions, motion));
 }
 
 EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,

@@ -1,11 +1,12 @@
 #include "tissue/simulate/finite_elements.h"
 
 #include "tissue/base/error.h"
+#include "tissue/base/tet_mesh.h"
 #include "tissue/base/topology.h"
 
 namespace tissue {
 
-FiniteElements::FiniteElements(const Body& body, int order)
+FiniteElements::FiniteElements(const Body& body, int order, const std::vector<Tet>& rigid)
     : order_(order), element_count_(body.tets.size()), parents_(body.parents) {
   if (order != 1 && order != 2) {
     throw InputError(ErrorCode::kParam,
@@ -36,6 +37,12 @@ FiniteElements::FiniteElements(const Body& body, int order)
     Pack& pack = packs_[i / kLanes];
     for_entries([&](int k, int j) { pack.gradients[k][j][i % kLanes] = gradients(k, j); });
     pack.volumes[i % kLanes] = i < element_count_ ? edges.determinant() / 6.0 : 0.0;
+  }
+  if (!rigid.empty()) rigid_volumes_.assign(body.rest.size(), 0.0);
+  for (const Tet& tet : rigid) {
+    const double six =
+        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    for (const std::uint32_t v : tet) rigid_volumes_[v] += six / 24.0;
   }
   if (order == 2) add_midpoints(body);
 }

@@ -12,6 +12,10 @@ GravityEnergy::GravityEnergy(const FiniteElements& elements, double mass_density
           elements.node_weight(a) * weight;
     }
   }
+  for (std::size_t v = 0; v < elements.rigid_volumes().size(); ++v) {
+    weight_.segment<3>(static_cast<Eigen::Index>(3 * v)) +=
+        mass_density * elements.rigid_volumes()[v] * gravity;
+  }
 }
 
 }  // namespace tissue

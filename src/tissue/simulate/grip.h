@@ -9,9 +9,10 @@ namespace tissue {
 class Grip {
  public:
   /// Takes hold, keeps it or lets go. True if that changed what is held. Vertices
-  /// that have a holder already stay with it.
+  /// that have a holder already stay with it; of an inclusion, if there are any, all are taken.
   bool update(const std::optional<ToolPose>& pose, const ToolDescription& tool,
-              const std::vector<Vec3>& vertices_now, const std::vector<int>& holders);
+              const std::vector<Vec3>& vertices_now, const std::vector<int>& holders,
+              const std::vector<int>& inclusions);
 
   const std::vector<std::uint32_t>& vertices() const { return vertices_; }
   /// Calls body(vertex, place) for each of them with where the tool at `pose` takes it.

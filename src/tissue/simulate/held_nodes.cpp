@@ -15,19 +15,36 @@ Vec3 node(const Eigen::VectorXd& all, std::size_t i) {
 }  // namespace
 
 HeldNodes::HeldNodes(const FiniteElements& elements, const std::vector<ToolDescription>& tools,
-                     std::size_t anchor_count, std::vector<int> anchor_of_vertex)
+                     std::size_t anchor_count, std::vector<int> anchor_of_vertex,
+                     const std::vector<std::vector<std::uint32_t>>& inclusions)
     : elements_(elements),
       tools_(tools),
       grips_(tools.size()),
       anchor_count_(anchor_count),
-      anchor_of_vertex_(std::move(anchor_of_vertex)),
-      holders_(anchor_of_vertex_) {}
+      anchor_of_vertex_(std::move(anchor_of_vertex)) {
+  complete_anchors(inclusions);
+  holders_ = anchor_of_vertex_;
+}
+
+void HeldNodes::complete_anchors(const std::vector<std::vector<std::uint32_t>>& inclusions) {
+  if (!inclusions.empty()) inclusion_of_.assign(anchor_of_vertex_.size(), kNobody);
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    int holder = kNobody;
+    for (const std::uint32_t v : inclusions[i]) {
+      inclusion_of_[v] = static_cast<int>(i);
+      if (holder == kNobody) holder = anchor_of_vertex_[v];
+    }
+    for (const std::uint32_t v : inclusions[i]) {
+      if (anchor_of_vertex_[v] == kNobody) anchor_of_vertex_[v] = holder;
+    }
+  }
+}
 
 bool HeldNodes::update(const ToolPoses& tools, const std::vector<Vec3>& vertices_now) {
   bool changed = false;
   for (std::size_t i = 0; i < grips_.size(); ++i) {
     if (tools_[i].shape != ToolShape::kSphere || !tools_[i].grasps) continue;
-    if (!grips_[i].update(tools[i], tools_[i], vertices_now, holders_)) continue;
+    if (!grips_[i].update(tools[i], tools_[i], vertices_now, holders_, inclusion_of_)) continue;
     changed = true;
     // The next tool takes what is left.
     find_holders();

@@ -11,9 +11,11 @@ namespace tissue {
 /// the midpoints between two such.
 class HeldNodes {
  public:
-  /// References must outlive this. `anchor_of_vertex` as anchors_of_vertices() gives it.
+  /// References must outlive this. `anchor_of_vertex` as anchors_of_vertices() gives it. Who holds
+  /// some of an inclusion's vertices holds all of them.
   HeldNodes(const FiniteElements& elements, const std::vector<ToolDescription>& tools,
-            std::size_t anchor_count, std::vector<int> anchor_of_vertex);
+            std::size_t anchor_count, std::vector<int> anchor_of_vertex,
+            const std::vector<std::vector<std::uint32_t>>& inclusions = {});
 
   /// Tools take hold or let go. True if that changed what is held.
   bool update(const ToolPoses& tools, const std::vector<Vec3>& vertices_now);
@@ -43,11 +45,14 @@ class HeldNodes {
  private:
   bool is_held_midpoint(std::size_t midpoint) const;
   void find_holders();
+  void complete_anchors(const std::vector<std::vector<std::uint32_t>>& inclusions);
 
   const FiniteElements& elements_;
   const std::vector<ToolDescription>& tools_;
   std::vector<Grip> grips_;
   std::size_t anchor_count_;
+  // Of each vertex, or nobody's; empty without inclusions.
+  std::vector<int> inclusion_of_;
   // Who holds each vertex: an anchor; an anchor or (counted on) a tool.
   std::vector<int> anchor_of_vertex_, holders_;
 };

@@ -25,6 +25,9 @@ MassMatrix::MassMatrix(const FiniteElements& elements, double density)
     for (int a = 0; a < 4; ++a)
       lumped_[elements.nodes(e)[a]] += 0.25 * density * elements.volume(e);
   }
+  for (std::size_t v = 0; v < elements.rigid_volumes().size(); ++v) {
+    lumped_[v] += rigid_at_vertex(v);
+  }
 }
 
 Eigen::VectorXd MassMatrix::times(const Eigen::VectorXd& x) const {
@@ -36,6 +39,10 @@ Eigen::VectorXd MassMatrix::times(const Eigen::VectorXd& x) const {
     return result;
   }
   result.setZero();
+  for (std::size_t v = 0; v < elements_.rigid_volumes().size(); ++v) {
+    const auto i = static_cast<Eigen::Index>(3 * v);
+    result.segment<3>(i) = rigid_at_vertex(v) * x.segment<3>(i);
+  }
   for (std::size_t pack = 0; pack < elements_.pack_count(); ++pack) {
     Lanes at_nodes[10][3], forces[10][3] = {};
     gather<2>(elements_, pack, x, at_nodes);

@@ -57,9 +57,16 @@ NodeSurface::NodeSurface(const FiniteElements& elements, const Body& body)
     triangles.clear();
     for (const Triangle& corners : body.surface) {
       Triangle middles{};
+      std::size_t found = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto ends = std::minmax(corners[(k + 1) % 3], corners[(k + 2) % 3]);
-        middles[k] = midpoint.at({ends.first, ends.second});
+        const auto middle = midpoint.find({ends.first, ends.second});
+        if (middle != midpoint.end()) middles[found++] = middle->second;
+      }
+      // A face of rigid tissue stays flat.
+      if (found < 3) {
+        triangles.push_back(corners);
+        continue;
       }
       triangles.push_back(middles);
       for (std::size_t k = 0; k < 3; ++k) {

@@ -63,6 +63,10 @@ class QuadraticSystem : public LinearSystem {
   void add_mass(const MassMatrix& mass, double factor) override {
     operator_->add_mass(factor * mass.density());
     vertices_.add_mass(mass, factor);
+    for (std::uint32_t v = 0; v < elements_.rigid_volumes().size(); ++v) {
+      const Mat3f block = static_cast<float>(factor * mass.rigid_at_vertex(v)) * Mat3f::Identity();
+      couplings_.push_back({v, v, block});
+    }
   }
 
   void add_elements(std::size_t first_pack, const std::vector<MaterialTensor>& tensors) override {

@@ -34,18 +34,25 @@ class SolidModel : public DeformationModel {
   SolidModel(const SceneDescription& scene, const Body& body, EffectCosts& costs, int threads)
       : scene_(scene),
         body_(body),
-        elements_(body, scene.element_order),
-        young_(young_of(scene.material, body)),
-        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene)),
+        inclusions_(inclusions_of(scene, body)),
+        soft_body_(inclusions_.empty() ? Body() : inclusions_.soft_part(body)),
+        elements_(elastic_body(), scene.element_order, inclusions_.tets),
+        young_(young_of(scene.material, elastic_body())),
+        held_(elements_, scene.tools, scene.anchors.size(), held_by_anchors(body, scene),
+              inclusions_.vertices),
         rest_(rest_positions(elements_)),
         positions_(rest_) {
     make_tissue(costs, threads);
     potentials_ = {tissue_.get()};
     if (SoftHolds::are_in(scene)) {
-      soft_.emplace(scene, elements_, body);
+      soft_.emplace(scene, elements_, elastic_body());
       add_part(*soft_, nullptr);
     }
     for (std::size_t i = 0; i < scene.effects.size(); ++i) make_effect(i, costs.at(i));
+    if (!inclusions_.empty()) {
+      motions_.emplace(inclusions_, elements_, scene.model == Model::kLinear);
+      needs_.motions = &*motions_;
+    }
     std::vector<const Energy*> energies = potentials_;
     if (scene.has<InertiaOptions>()) {
       dynamics_ = std::make_unique<Dynamics>(scene, elements_, *tissue_, costs);
@@ -93,11 +100,13 @@ class SolidModel : public DeformationModel {
   bool recovering() const override { return dynamics_ && dynamics_->moving(); }
   const State& state() const override { return state_; }
 
-  std::vector<Vec3> places(const Body&, const std::vector<TetPlace>& material) const override {
+  std::vector<Vec3> places(const Body& body, const std::vector<TetPlace>& material) const override {
     const Eigen::VectorXd nodes = positions_now();
-    std::vector<Vec3> result;
-    for (const TetPlace& place : material) {
-      result.push_back(elements_.value_at(place.tet, place.barycentric, nodes));
+    // As if all was linear, which is right where it is rigid.
+    std::vector<Vec3> result = DeformationModel::places(body, material);
+    for (std::size_t i = 0; i < material.size(); ++i) {
+      const std::optional<std::size_t> element = element_of(material[i].tet);
+      if (element) result[i] = elements_.value_at(*element, material[i].barycentric, nodes);
     }
     return result;
   }
@@ -130,8 +139,15 @@ class SolidModel : public DeformationModel {
     return forces;
   }
 
+  // What is rigid has none, and nobody knows its stress.
   std::vector<TetStrain> strains() const override {
-    return elastic_ ? tet_strains(elements_, *elastic_, positions_now()) : std::vector<TetStrain>();
+    if (elastic_ == nullptr) return {};
+    const std::vector<TetStrain> soft = tet_strains(elements_, *elastic_, positions_now());
+    std::vector<TetStrain> result(body_.tets.size(), TetStrain{0.0, 0.0, 1.0});
+    for (std::size_t t = 0; t < result.size(); ++t) {
+      if (const std::optional<std::size_t> element = element_of(t)) result[t] = soft[*element];
+    }
+    return result;
   }
 
  private:
@@ -153,7 +169,7 @@ class SolidModel : public DeformationModel {
   }
 
   std::vector<Lame> local_lame() const {
-    std::vector<Lame> lame = lame_of(scene_.material, body_);
+    std::vector<Lame> lame = lame_of(scene_.material, elastic_body());
     for (const Effect& effect : scene_.effects) {
       if (effect.kind().local_part != nullptr) lame = effect.kind().local_part(std::move(lame));
     }
@@ -164,7 +180,7 @@ class SolidModel : public DeformationModel {
     const Effect& effect = scene_.effects[number];
     if (effect.kind().make == nullptr) return;
     const CostClock clock(&cost);
-    effects_.push_back(effect.kind().make(effect, {scene_, body_, elements_, young_}));
+    effects_.push_back(effect.kind().make(effect, {scene_, elastic_body(), elements_, young_}));
     cost.bytes = effects_.back()->bytes();
     add_part(*effects_.back(), &cost);
   }
@@ -179,6 +195,16 @@ class SolidModel : public DeformationModel {
     }
     if (effect.link() != nullptr) links_.push_back(effect.link());
   }
+
+  static RigidInclusions inclusions_of(const SceneDescription& scene, const Body& body) {
+    const auto* const options = scene.find<RigidInclusionsOptions>();
+    return options == nullptr ? RigidInclusions() : RigidInclusions(body, options->density_above);
+  }
+  // Nothing for a tet that is rigid.
+  std::optional<std::size_t> element_of(std::size_t tet) const {
+    return inclusions_.empty() ? tet : inclusions_.element_of(tet);
+  }
+  const Body& elastic_body() const { return inclusions_.empty() ? body_ : soft_body_; }
 
   static std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
     std::vector<int> holders = anchors_of_vertices(body, scene.anchors);
@@ -210,10 +236,8 @@ class SolidModel : public DeformationModel {
     for (int stride = 0; stride < kMaxStrides && part < 1.0 && settled_; ++stride) {
       part = actions_->stride(tools, positions_);
       if (part < kShortestStride) break;
-      const Eigen::VectorXd there = positions_;
       settled_ =
           advance(between(actions_->reached(), tools, part), must_solve, kMaxHalvings, has_solved);
-      if (!settled_) positions_ = there;
       must_solve = false;
     }
     if (!has_solved) {
@@ -222,6 +246,7 @@ class SolidModel : public DeformationModel {
       report_.solver = before.solver;
     }
     report_.not_converged = !settled_;
+    if (!settled_) report_.energy = potential_energy();
     take_state();
   }
 
@@ -298,6 +323,7 @@ class SolidModel : public DeformationModel {
   }
 
   void take_state() {
+    report_.unknowns = equilibrium_->unknowns();
     report_.moved_vertices = 0;
     for (std::size_t v = 0; v < body_.rest.size(); ++v) {
       const auto i = static_cast<Eigen::Index>(3 * v);
@@ -308,9 +334,13 @@ class SolidModel : public DeformationModel {
 
   const SceneDescription& scene_;
   const Body& body_;
+  // What moves as rigid bodies, and what is left of the body without it, where there is any.
+  RigidInclusions inclusions_;
+  Body soft_body_;
   FiniteElements elements_;
   // Of each tet [Pa].
   std::vector<double> young_;
+  std::optional<RigidMotions> motions_;
   HeldNodes held_;
   // What the tissue stores; as a solid, if it is one.
   std::unique_ptr<const Energy> tissue_;

@@ -1,5 +1,6 @@
 #include "solver_choice.h"
 
+#include "rigid_system.h"
 #include "squared_system.h"
 #include "tissue/simulate/multigrid_system.h"
 #include "tissue/simulate/quadratic_system.h"
@@ -24,11 +25,15 @@ std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
   // What Newton's iterations need, their own tolerance may be finer; and what a factorisation
   // gives.
   constexpr double kTolerance = 1e-3, kDirectTolerance = 1e-9;
-  const auto with_squares = [needs](std::unique_ptr<LinearSystem> system, double tolerance) {
-    return needs.adds_squares ? squared_system(std::move(system), tolerance) : std::move(system);
+  const auto adapted = [needs](std::unique_ptr<LinearSystem> system, double tolerance) {
+    if (needs.adds_squares) system = squared_system(std::move(system), tolerance);
+    if (needs.motions != nullptr) {
+      system = rigid_system(std::move(system), *needs.motions, tolerance);
+    }
+    return system;
   };
-  const LinearSystemMaker direct = [&elements, with_squares] {
-    return with_squares(direct_system(elements), kDirectTolerance);
+  const LinearSystemMaker direct = [&elements, adapted] {
+    return adapted(direct_system(elements), kDirectTolerance);
   };
   std::unique_ptr<LinearSystem> iterative;
   if (elements.node_count() >= kFewNodes && (!needs.is_quadratic || scene.has<InertiaOptions>())) {
@@ -36,13 +41,10 @@ std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
                     ? multigrid_system(elements, kTolerance, run)
                     : quadratic_system(elements, constitution_of(scene.model), kTolerance, run);
   }
-  if (!iterative) {
-    return std::make_unique<Equilibrium>(std::move(energies), direct(), nullptr,
-                                         needs.is_quadratic);
-  }
-  return std::make_unique<Equilibrium>(std::move(energies),
-                                       with_squares(std::move(iterative), kTolerance), direct,
-                                       needs.is_quadratic);
+  const bool iterates = iterative != nullptr;
+  return std::make_unique<Equilibrium>(
+      std::move(energies), iterates ? adapted(std::move(iterative), kTolerance) : direct(),
+      iterates ? direct : LinearSystemMaker(), needs.is_quadratic, needs.motions);
 }
 
 }  // namespace tissue

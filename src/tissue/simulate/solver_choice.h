@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rigid_inclusions.h"
 #include "tissue/base/run.h"
 #include "tissue/simulate/constitutive.h"
 #include "tissue/simulate/equilibrium.h"
@@ -13,6 +14,8 @@ Constitution constitution_of(Model model);
 struct SystemNeeds {
   bool is_quadratic = false;
   bool adds_squares = false;
+  /// Nothing where all motions are free.
+  RigidMotions* motions = nullptr;
 };
 
 /// What finds a scene's equilibria or steps: one factorisation that serves all of them where the

@@ -12,6 +12,7 @@
   EFFECT(inertia)                \
   EFFECT(damping)                \
   EFFECT(near_incompressibility) \
+  EFFECT(rigid_inclusions)       \
   EFFECT(contact)                \
   EFFECT(force_feedback)
 
