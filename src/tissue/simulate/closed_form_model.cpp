@@ -50,6 +50,11 @@ class ClosedFormModel : public DeformationModel {
   }
 
   const State& state() const override { return state_; }
+  std::vector<Vec3> places(const std::vector<TetPlace>& material) const override {
+    std::vector<Vec3> result;
+    for (const TetPlace& place : material) result.push_back(linear_place(*body_, state_, place));
+    return result;
+  }
   bool recovering() const override { return phase_ == Phase::kRecovering; }
 
  private:

@@ -80,7 +80,7 @@ std::map<std::string, std::optional<Vec3>> Scene::probes() const {
   return implementation_->probes.places(state());
 }
 std::vector<Vec3> Scene::places(const std::vector<TetPlace>& material) const {
-  return implementation_->model->places(body(), material);
+  return implementation_->model->places(material);
 }
 std::vector<std::optional<Vec3>> Scene::tool_forces() const {
   std::vector<std::optional<Vec3>> forces = implementation_->model->tool_forces();
