@@ -79,8 +79,23 @@ def ball_actor(centre, radius, opacity=0.5):
     ball.SetRadius(radius)
     ball.SetThetaResolution(48)
     ball.SetPhiResolution(48)
+    return _tool_actor(ball, opacity)
+
+
+def shaft_actor(tip, end, radius, opacity=0.5):
+    line = vtk.vtkLineSource()
+    line.SetPoint1(*tip)
+    line.SetPoint2(*end)
+    tube = vtk.vtkTubeFilter()
+    tube.SetInputConnection(line.GetOutputPort())
+    tube.SetRadius(radius)
+    tube.SetNumberOfSides(48)
+    return _tool_actor(tube, opacity)
+
+
+def _tool_actor(source, opacity):
     mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(ball.GetOutputPort())
+    mapper.SetInputConnection(source.GetOutputPort())
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     actor.GetProperty().SetColor(0.25, 0.25, 0.3)
