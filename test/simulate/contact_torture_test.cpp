@@ -9,9 +9,9 @@ using namespace tissue;
 using namespace tissue_test;
 
 TEST(Contact, AToolThatJumpsIsCaughtByItsPath) {
-  for (const Case& which : all_cases()) {
-    if (which.order == 2) continue;
-    const std::string text = scene_text({which.model}, kFinger, "solver: {tolerance: 1e-6}\n");
+  for (const Case& which :
+       {Case{"mass_spring"}, Case{"linear"}, Case{"corotational"}, Case{"neo_hookean"}}) {
+    const std::string text = scene_text(which, kFinger, "solver: {tolerance: 1e-6}\n");
     const auto body = slab(9);
     const auto at = [](double height) {
       return ToolPose{Vec3(0.0302, 0.0313, 0.020 + kRadius + height)};
@@ -76,6 +76,7 @@ TEST(Contact, AToolThatComesUpInTheTissueTouchesNothingUntilItHasBeenOutside) {
   const StepReport inside = scene.step(above(-0.015), 0.01);
   EXPECT_TRUE(inside.tool_inside);
   EXPECT_EQ(farthest_from_rest(scene), 0.0);
+  EXPECT_FALSE(scene.step(std::nullopt, 0.01).tool_inside);
   EXPECT_FALSE(scene.step(above(0.001), 0.01).tool_inside);
   scene.step(above(-0.003), 0.01);
   EXPECT_GT(scene.tool_forces()[0]->z(), 0.0);

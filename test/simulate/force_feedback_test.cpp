@@ -107,7 +107,7 @@ TEST(ForceFeedback, ComplianceIsAFiniteDifferenceOfTheStep) {
         << stiffness << "\n"
         << compliance.inverse();
     if (presses(shape)) return;
-    EXPECT_LE((stiffness * compliance - Mat3::Identity()).norm(), 0.01)
+    EXPECT_LE((stiffness * compliance - Mat3::Identity()).norm(), model == "linear" ? 1e-3 : 2e-3)
         << model << order << shape << "\n"
         << stiffness * compliance;
     EXPECT_GT(compliance.diagonal().minCoeff(), 0.0);

@@ -73,8 +73,7 @@ template <int order>
 double AveragedVolumeEnergy::evaluate_order(const Eigen::VectorXd& positions,
                                             Eigen::VectorXd* gradient, Hessian* hessian) const {
   const std::vector<QuadraturePoint>& points = elements_.quadrature();
-  // Calls body(pack, point, F, dθ/dF, what each lane weighs); F is the displacement's gradient for
-  // small strain, where only its trace counts.
+  // Calls body(pack, how many of its lanes are elements, point, θ, dθ/dF, what each lane weighs).
   const auto for_each_point = [&](const auto& body) {
     Lanes nodes[kNodes<order>][3];
     for (std::size_t p = 0; p < elements_.pack_count(); ++p) {

@@ -9,8 +9,6 @@ namespace {
 // A longer step than these many substeps is cut into as many, longer ones: implicit Euler stays
 // stable, and what is lost is detail of the motion in between.
 constexpr int kMaxSubsteps = 100;
-// No more than these for tools that may not go their way at once.
-constexpr int kMaxStrides = 16;
 
 }  // namespace
 

@@ -12,8 +12,6 @@ namespace {
 constexpr int kMaxHalvings = 4;
 // A way that is cut shorter than this is no way.
 constexpr double kShortestStride = 1e-6;
-// Tools that may not go all their way at once come to so many places in a step, at most.
-constexpr int kMaxStrides = 16;
 
 // Tissue as a solid. Without inertia it is always at rest: each step finds the equilibrium under
 // its loads, held by anchors and moved by tools; with it, it goes on in time.

@@ -7,6 +7,9 @@
 
 namespace tissue {
 
+/// Tools that may not go all their way at once come to so many places in a step, at most.
+constexpr int kMaxStrides = 16;
+
 /// All that tools do to a solid: the nodes that they hold, and what effects make of their motion.
 /// Knows how far they have come.
 class ToolActions {

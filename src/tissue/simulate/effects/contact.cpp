@@ -161,6 +161,7 @@ class Contact : public SolidEffect, public ToolLink {
     deepest_ = 0.0;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       states_[i].lags = false;
+      if (!solid.tools[i]) states_[i].is_inside = false;
       if (!energy_.capsule(i) || !solid.tools[i]) continue;
       const Capsule wished = capsule_at(tools_[i], *solid.tools[i]);
       states_[i].lags =
