@@ -118,8 +118,9 @@ TEST(NearIncompressibility, ABeamSagsAsFarAsAQuadraticReference) {
   const AveragedVolumeEnergy averaged(
       elements, std::vector<double>(count, lame.lambda - 1.5 * lame.mu), Constitution::kLinear);
   const GravityEnergy gravity(elements, 1000.0, {0.0, 0.0, -9.81});
+  EffectCost cost;
   Equilibrium equilibrium({&local, &averaged, &gravity},
-                          squared_system(multigrid_system(elements, 1e-3), 1e-3));
+                          squared_system(multigrid_system(elements, 1e-3), 1e-3, cost));
   equilibrium.hold(
       tissue_test::nodes_where(elements.rest(), [](const Vec3& p) { return p.x() < 1e-6; }));
   Eigen::VectorXd positions = rest_positions(elements);

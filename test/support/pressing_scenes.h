@@ -42,7 +42,8 @@ inline std::string scene_text(const Case& which, const std::string& tools,
 inline const std::string kFinger = "[{name: finger, shape: {sphere: 0.006}, mode: press}]";
 constexpr double kRadius = 0.006;
 
-/// A ball of 30 mm radius with a tumour of a third of that in it, in 2,000 tets of three levels.
+/// A ball of 30 mm radius with a tumour of a third of that in it, in 672 tets of three levels:
+/// densities from 56 to 84.
 inline std::shared_ptr<const Body> organ() {
   static const auto body = std::make_shared<Body>(body_of(tissue_test::refined_ball(0.024)));
   return body;

@@ -17,6 +17,8 @@ struct Body {
   /// For each of the last vertices the ends of the edge that it halves; empty for a mesh without a
   /// hierarchy.
   std::vector<Edge> parents = {};
+
+  std::size_t bytes() const;
 };
 
 /// Throws InputError as check_mesh does.

@@ -86,6 +86,7 @@ class Equilibrium {
   double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
                   Hessian* hessian) const;
   Eigen::VectorXd gradient_change(const Eigen::VectorXd& positions,
+                                  const Eigen::VectorXd& gradient_there,
                                   const Eigen::VectorXd& motion) const;
   double prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient);
   bool use_fallback(const Eigen::VectorXd& positions);

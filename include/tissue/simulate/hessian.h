@@ -22,6 +22,9 @@ struct SquareSum {
 
   /// result += Σ r rᵀ x
   void multiply_add(const Eigen::VectorXd& x, Eigen::VectorXd& result) const;
+  std::size_t bytes() const {
+    return (begin.size() + nodes.size()) * sizeof(std::uint32_t) + values.size() * sizeof(Vec3);
+  }
 };
 
 /// What takes the second derivatives of energies by the positions of nodes [N/m], and keeps as much

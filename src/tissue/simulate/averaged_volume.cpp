@@ -151,8 +151,7 @@ double AveragedVolumeEnergy::evaluate_order(const Eigen::VectorXd& positions,
 std::size_t AveragedVolumeEnergy::bytes() const {
   return lambda_.size() * sizeof(double) + averages_.size() * sizeof(averages_[0]) +
          weights_.size() * sizeof(double) + places_.size() * sizeof(places_[0]) +
-         squares_.begin.size() * sizeof(squares_.begin[0]) +
-         squares_.nodes.size() * (sizeof(squares_.nodes[0]) + sizeof(Vec3));
+         2 * squares_.bytes();
 }
 
 }  // namespace tissue

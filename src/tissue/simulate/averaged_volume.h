@@ -24,6 +24,7 @@ class AveragedVolumeEnergy : public Energy {
   double evaluate(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient,
                   Hessian* hessian) const override;
   bool is_penalty() const override { return true; }
+  /// Of this, and of the squares that a linear system keeps of it.
   std::size_t bytes() const;
 
  private:

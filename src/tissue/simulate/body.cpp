@@ -6,6 +6,12 @@
 
 namespace tissue {
 
+std::size_t Body::bytes() const {
+  return rest.size() * sizeof(Vec3f) + tets.size() * sizeof(Tet) +
+         surface.size() * sizeof(Triangle) +
+         (densities.size() + tet_densities.size()) * sizeof(float) + parents.size() * sizeof(Edge);
+}
+
 Body body_of(const TetMesh& mesh) {
   check_mesh(mesh);
   Body body;

@@ -202,6 +202,7 @@ Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
 // How dE/dx changes along a motion: the Hessian that systems have leaves out what would make it
 // indefinite, differences do not.
 Eigen::VectorXd Equilibrium::gradient_change(const Eigen::VectorXd& positions,
+                                             const Eigen::VectorXd& gradient_there,
                                              const Eigen::VectorXd& motion) const {
   constexpr double kPart = 1e-6;
   Eigen::VectorXd change = Eigen::VectorXd::Zero(positions.size());
@@ -210,8 +211,7 @@ Eigen::VectorXd Equilibrium::gradient_change(const Eigen::VectorXd& positions,
     active_->multiply_add(motion, change);
   } else if (farthest > 0.0) {
     const double step = kPart * extent(positions) / farthest;
-    change =
-        (gradient(positions + step * motion) - gradient(positions - step * motion)) / (2.0 * step);
+    change = (gradient(positions + step * motion) - gradient_there) / step;
   }
   return change;
 }
@@ -225,24 +225,23 @@ std::vector<Eigen::VectorXd> Equilibrium::responses(const Eigen::VectorXd& posit
   if (!is_prepared_) return {};
   std::vector<Eigen::VectorXd> answers;
   forces.clear();
+  const Eigen::VectorXd there = quadratic_ ? Eigen::VectorXd() : gradient(positions);
   for (std::size_t k = 0; k < motions.size(); ++k) {
-    Eigen::VectorXd pull = -pulls[k] - gradient_change(positions, motions[k]), step;
+    Eigen::VectorXd pull = -pulls[k] - gradient_change(positions, there, motions[k]), step;
     restrict(pull);
-    bool is_solved = true;
     const int iterations = conjugate_gradients(
         pull, kTolerance,
         [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
-          product = gradient_change(positions, from);
+          product = gradient_change(positions, there, from);
           restrict(product);
         },
         [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
-          is_solved = is_solved && solve_for(positions, -residual, z);
-          if (!is_solved) z.setZero(residual.size());
+          if (!active_->precondition(residual, z)) z.setZero(residual.size());
         },
         step);
     if (iterations < 0) return {};
     answers.push_back(motions[k] + step);
-    forces.push_back(pulls[k] + gradient_change(positions, answers.back()));
+    forces.push_back(pulls[k] + gradient_change(positions, there, answers.back()));
   }
   return answers;
 }

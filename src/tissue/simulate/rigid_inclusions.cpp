@@ -67,6 +67,12 @@ Body RigidInclusions::soft_part(const Body& body) const {
   return soft;
 }
 
+std::size_t RigidInclusions::bytes() const {
+  std::size_t sum = tets.capacity() * sizeof(Tet) + tet_numbers.capacity() * sizeof(std::uint32_t);
+  for (const auto& nodes : vertices) sum += nodes.capacity() * sizeof(std::uint32_t);
+  return sum;
+}
+
 std::optional<std::size_t> RigidInclusions::element_of(std::size_t tet) const {
   const auto at = std::lower_bound(tet_numbers.begin(), tet_numbers.end(), tet);
   if (at != tet_numbers.end() && *at == tet) return std::nullopt;
@@ -74,8 +80,9 @@ std::optional<std::size_t> RigidInclusions::element_of(std::size_t tet) const {
 }
 
 RigidMotions::RigidMotions(const RigidInclusions& inclusions, const FiniteElements& elements,
-                           bool small_strain)
-    : small_strain_(small_strain) {
+                           bool small_strain, EffectCost& cost)
+    : small_strain_(small_strain), cost_(cost) {
+  const CostClock clock(&cost_);
   std::vector<int> group_of(elements.vertex_count(), -1);
   // A midpoint is rigid if its edge is, not if only both its ends are.
   std::set<Edge> edges;
@@ -95,7 +102,11 @@ RigidMotions::RigidMotions(const RigidInclusions& inclusions, const FiniteElemen
         static_cast<std::uint32_t>(elements.vertex_count() + i));
   }
   positions_ = rest_positions(elements);
-  look_at(positions_);
+  cost_.bytes += static_cast<std::size_t>(positions_.size()) * sizeof(double);
+  for (const Group& group : groups_) {
+    cost_.bytes += sizeof(Group) + group.nodes.capacity() * sizeof(std::uint32_t);
+  }
+  find_products();
 }
 
 void RigidMotions::hold(const std::vector<std::uint8_t>& fixed) {
@@ -104,7 +115,13 @@ void RigidMotions::hold(const std::vector<std::uint8_t>& fixed) {
 
 void RigidMotions::look_at(const Eigen::VectorXd& positions) {
   // Small strain has the same motions everywhere.
-  if (!small_strain_) positions_ = positions;
+  if (small_strain_) return;
+  const CostClock clock(&cost_);
+  positions_ = positions;
+  find_products();
+}
+
+void RigidMotions::find_products() {
   for (Group& group : groups_) {
     const auto count = static_cast<double>(group.nodes.size());
     group.centre.setZero();
@@ -150,6 +167,7 @@ Six RigidMotions::amounts(const Group& group, const Eigen::VectorXd& motion) con
 }
 
 void RigidMotions::project(Eigen::VectorXd& motion) const {
+  const CostClock clock(&cost_);
   for (const Group& group : groups_) {
     if (group.is_held) continue;
     const Six nearest = amounts(group, motion);
@@ -162,6 +180,7 @@ Eigen::VectorXd RigidMotions::moved(const Eigen::VectorXd& positions,
                                     const Eigen::VectorXd& motion) const {
   Eigen::VectorXd result = positions + motion;
   if (small_strain_) return result;
+  const CostClock clock(&cost_);
   for (const Group& group : groups_) {
     if (group.is_held) continue;
     const Six nearest = amounts(group, motion);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "effect_costs.h"
 #include "tissue/simulate/body.h"
 #include "tissue/simulate/finite_elements.h"
 
@@ -17,6 +18,7 @@ struct RigidInclusions {
   RigidInclusions() = default;
 
   bool empty() const { return vertices.empty(); }
+  std::size_t bytes() const;
   /// The body without their tets; its vertices stay.
   Body soft_part(const Body& body) const;
 
@@ -33,9 +35,10 @@ struct RigidInclusions {
 /// The motions that rigid inclusions leave to a body: six of each, and those of all other nodes.
 class RigidMotions {
  public:
-  /// `small_strain`: turns are added up as if they were infinitely small.
-  RigidMotions(const RigidInclusions& inclusions, const FiniteElements& elements,
-               bool small_strain);
+  /// `small_strain`: turns are added up as if they were infinitely small. What is done here is
+  /// counted as `cost`, which must outlive this.
+  RigidMotions(const RigidInclusions& inclusions, const FiniteElements& elements, bool small_strain,
+               EffectCost& cost);
 
   struct Group {
     std::vector<std::uint32_t> nodes;
@@ -47,6 +50,7 @@ class RigidMotions {
     bool is_held = false;
   };
   const std::vector<Group>& groups() const { return groups_; }
+  EffectCost& cost() const { return cost_; }
 
   /// Those of which all is held take no part.
   void hold(const std::vector<std::uint8_t>& fixed_coordinates);
@@ -65,12 +69,14 @@ class RigidMotions {
 
  private:
   Eigen::Matrix<double, 6, 1> amounts(const Group& group, const Eigen::VectorXd& motion) const;
+  void find_products();
   Vec3 offset(const Group& group, std::uint32_t node) const {
     return (positions_.segment<3>(3 * Eigen::Index{node}) - group.centre) / group.size;
   }
 
   std::vector<Group> groups_;
   bool small_strain_;
+  EffectCost& cost_;
   Eigen::VectorXd positions_;
 };
 

@@ -19,6 +19,7 @@ class RigidSystem : public AdaptedSystem {
 
   bool precondition(const Eigen::VectorXd& r, Eigen::VectorXd& z) override {
     if (!base().precondition(r, z)) return false;
+    const CostClock clock(&motions_.cost());
     for (std::size_t g = 0; g < parts_.size(); ++g) {
       const RigidMotions::Group& group = motions_.groups()[g];
       if (group.is_held) continue;
@@ -38,6 +39,8 @@ class RigidSystem : public AdaptedSystem {
 
   void forget() override {
     AdaptedSystem::forget();
+    motions_.cost().bytes -= bytes_;
+    bytes_ = 0;
     parts_.clear();
   }
 
@@ -51,6 +54,7 @@ class RigidSystem : public AdaptedSystem {
       }
     }
     if (!base().prepare(held, shift)) return false;
+    const CostClock clock(&motions_.cost());
     const bool is_new = parts_.empty();
     parts_.resize(motions_.groups().size());
     for (std::size_t g = 0; g < parts_.size(); ++g) {
@@ -81,6 +85,9 @@ class RigidSystem : public AdaptedSystem {
     constexpr int kRounds = 2;
     const auto size = static_cast<Eigen::Index>(held.size());
     part.followers.setZero(size, 6);
+    const std::size_t bytes = 6 * held.size() * sizeof(double);
+    bytes_ += bytes;
+    motions_.cost().bytes += bytes;
     Eigen::VectorXd motion, forces, step;
     for (int k = 0; k < 6; ++k) {
       for (int round = 0; round < kRounds; ++round) {
@@ -113,6 +120,8 @@ class RigidSystem : public AdaptedSystem {
 
   const RigidMotions& motions_;
   std::vector<Part> parts_;
+  // Of all followers.
+  std::size_t bytes_ = 0;
 };
 
 }  // namespace

@@ -15,9 +15,14 @@ Run run_on(int threads) {
   return run;
 }
 
-RigidInclusions inclusions_of(const SceneDescription& scene, const Body& body) {
+RigidInclusions inclusions_of(const SceneDescription& scene, const Body& body, EffectCosts& costs) {
   const auto* const options = scene.find<RigidInclusionsOptions>();
-  return options == nullptr ? RigidInclusions() : RigidInclusions(body, options->density_above);
+  if (options == nullptr) return {};
+  EffectCost& cost = *costs.of<RigidInclusionsOptions>();
+  const CostClock clock(&cost);
+  RigidInclusions inclusions(body, options->density_above);
+  cost.bytes = inclusions.bytes();
+  return inclusions;
 }
 
 std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene) {
@@ -32,7 +37,7 @@ std::vector<int> held_by_anchors(const Body& body, const SceneDescription& scene
 Solid::Solid(const SceneDescription& scene, const Body& body, EffectCosts& costs, int threads)
     : scene_(scene),
       body_(body),
-      inclusions_(inclusions_of(scene, body)),
+      inclusions_(inclusions_of(scene, body, costs)),
       soft_body_(inclusions_.empty() ? Body() : inclusions_.soft_part(body)),
       elements_(elastic_body(), scene.element_order, inclusions_.tets),
       young_(young_of(scene.material, elastic_body())),
@@ -46,7 +51,9 @@ Solid::Solid(const SceneDescription& scene, const Body& body, EffectCosts& costs
   }
   for (std::size_t i = 0; i < scene.effects.size(); ++i) make_effect(i, costs.at(i));
   if (!inclusions_.empty()) {
-    motions_.emplace(inclusions_, elements_, scene.model == Model::kLinear);
+    costs.of<RigidInclusionsOptions>()->bytes += soft_body_.bytes();
+    motions_.emplace(inclusions_, elements_, scene.model == Model::kLinear,
+                     *costs.of<RigidInclusionsOptions>());
     needs_.motions = &*motions_;
   }
   std::vector<const Energy*> energies = potentials_;
@@ -89,6 +96,7 @@ void Solid::make_effect(std::size_t number, EffectCost& cost) {
   const CostClock clock(&cost);
   effects_.push_back(effect.kind().make(effect, {scene_, elastic_body(), elements_, young_}));
   cost.bytes = effects_.back()->bytes();
+  if (effects_.back()->adds_squares()) needs_.squares = &cost;
   add_part(*effects_.back(), &cost);
 }
 
@@ -98,7 +106,6 @@ void Solid::add_part(SolidEffect& effect, EffectCost* cost) {
     counted_.push_back(std::make_unique<CountedEnergy>(*energy, cost));
     potentials_.push_back(counted_.back().get());
     needs_.is_quadratic = needs_.is_quadratic && effect.is_quadratic();
-    needs_.adds_squares = needs_.adds_squares || effect.adds_squares();
   }
   if (effect.link() != nullptr) links_.push_back(effect.link());
 }

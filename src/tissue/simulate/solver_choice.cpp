@@ -26,7 +26,9 @@ std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
   // gives.
   constexpr double kTolerance = 1e-3, kDirectTolerance = 1e-9;
   const auto adapted = [needs](std::unique_ptr<LinearSystem> system, double tolerance) {
-    if (needs.adds_squares) system = squared_system(std::move(system), tolerance);
+    if (needs.squares != nullptr) {
+      system = squared_system(std::move(system), tolerance, *needs.squares);
+    }
     if (needs.motions != nullptr) {
       system = rigid_system(std::move(system), *needs.motions, tolerance);
     }

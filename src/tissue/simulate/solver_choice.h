@@ -13,7 +13,8 @@ Constitution constitution_of(Model model);
 /// What a scene's energies ask of a linear system.
 struct SystemNeeds {
   bool is_quadratic = false;
-  bool adds_squares = false;
+  /// The cost of what adds sums of squares to it, if anything does.
+  EffectCost* squares = nullptr;
   /// Nothing where all motions are free.
   RigidMotions* motions = nullptr;
 };
