@@ -8,6 +8,14 @@ namespace {
 using namespace tissue;
 using namespace tissue_test;
 
+TEST(Contact, P8_WhereNothingTouchesRestIsKeptToTheLastBit) {
+  for (const Case& which : all_cases()) {
+    Scene scene(parse_scene(scene_text(which, kFinger)), organ());
+    for (int i = 0; i < 4; ++i) scene.step(above(0.001 + 0.001 * i), 0.02);
+    EXPECT_EQ(farthest_from_rest(scene), 0.0) << which.name();
+  }
+}
+
 TEST(Contact, AToolThatJumpsIsCaughtByItsPath) {
   for (const Case& which :
        {Case{"mass_spring"}, Case{"linear"}, Case{"corotational"}, Case{"neo_hookean"}}) {

@@ -88,6 +88,8 @@ class Equilibrium {
   Eigen::VectorXd gradient_change(const Eigen::VectorXd& positions,
                                   const Eigen::VectorXd& gradient_there,
                                   const Eigen::VectorXd& motion) const;
+  static double extent(const Eigen::VectorXd& positions);
+  bool is_rounding(double force, const Eigen::VectorXd& positions) const;
   double prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient);
   bool use_fallback(const Eigen::VectorXd& positions);
   bool prepare_active();

@@ -21,6 +21,9 @@ struct RowResult {
   /// Resident memory of the scene at its peak, above that of the mesh; the samples that are taken
   /// of it are among it, some 5 MB.
   double bytes = 0.0;
+  /// Making the scene and all steps; what each effect had of that.
+  double run_seconds = 0.0;
+  std::vector<EffectCost> effects;
   /// Of the last step.
   int iterations = 0;
   std::string solver;

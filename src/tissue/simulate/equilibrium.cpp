@@ -1,6 +1,5 @@
 #include "tissue/simulate/equilibrium.h"
 
-#include "conjugate_gradients.h"
 #include "rigid_inclusions.h"
 #include "tissue/base/error.h"
 
@@ -18,12 +17,12 @@ constexpr double kRounding = 1e-13;
 // stiff tumour that was collapsed or turned inside out stayed entangled.
 constexpr double kLongestStep = 0.1;
 
-double extent(const Eigen::VectorXd& positions) {
+}  // namespace
+
+double Equilibrium::extent(const Eigen::VectorXd& positions) {
   const Eigen::Map<const Eigen::Matrix3Xd> places(positions.data(), 3, positions.size() / 3);
   return (places.rowwise().maxCoeff() - places.rowwise().minCoeff()).norm();
 }
-
-}  // namespace
 
 Equilibrium::Equilibrium(std::vector<const Energy*> energies, std::unique_ptr<LinearSystem> system,
                          LinearSystemMaker fallback, bool quadratic, RigidMotions* motions)
@@ -109,6 +108,11 @@ double Equilibrium::norm_of(const Eigen::VectorXd& gradient, bool of_fixed) cons
   return std::sqrt(sum);
 }
 
+// Forces that are nothing but that are in balance.
+bool Equilibrium::is_rounding(double force, const Eigen::VectorXd& positions) const {
+  return force <= kRounding * largest_stiffness_ * extent(positions);
+}
+
 // The energy; is_prepared_ says whether the system can be solved. The gradient is made on the way
 // where it is asked for.
 double Equilibrium::prepare(const Eigen::VectorXd& positions, Eigen::VectorXd* gradient) {
@@ -187,65 +191,6 @@ bool Equilibrium::line_search(const Eigen::VectorXd& step, Eigen::VectorXd& grad
   return false;
 }
 
-Eigen::VectorXd Equilibrium::response(const Eigen::VectorXd& positions,
-                                      const Eigen::VectorXd& motion) {
-  prepare(positions, nullptr);
-  if (!is_prepared_) return motion;
-  // With the forces that are out of balance left as they are, so that a start at an equilibrium
-  // stays near one.
-  Eigen::VectorXd pull = Eigen::VectorXd::Zero(positions.size()), step;
-  active_->multiply_add(motion, pull);
-  if (!solve_for(positions, pull, step)) return motion;
-  return motion + step;
-}
-
-// How dE/dx changes along a motion: the Hessian that systems have leaves out what would make it
-// indefinite, differences do not.
-Eigen::VectorXd Equilibrium::gradient_change(const Eigen::VectorXd& positions,
-                                             const Eigen::VectorXd& gradient_there,
-                                             const Eigen::VectorXd& motion) const {
-  constexpr double kPart = 1e-6;
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(positions.size());
-  const double farthest = motion.cwiseAbs().maxCoeff();
-  if (quadratic_) {
-    active_->multiply_add(motion, change);
-  } else if (farthest > 0.0) {
-    const double step = kPart * extent(positions) / farthest;
-    change = (gradient(positions + step * motion) - gradient_there) / step;
-  }
-  return change;
-}
-
-std::vector<Eigen::VectorXd> Equilibrium::responses(const Eigen::VectorXd& positions,
-                                                    const std::vector<Eigen::VectorXd>& motions,
-                                                    const std::vector<Eigen::VectorXd>& pulls,
-                                                    std::vector<Eigen::VectorXd>& forces) {
-  constexpr double kTolerance = 1e-4;
-  prepare(positions, nullptr);
-  if (!is_prepared_) return {};
-  std::vector<Eigen::VectorXd> answers;
-  forces.clear();
-  const Eigen::VectorXd there = quadratic_ ? Eigen::VectorXd() : gradient(positions);
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    Eigen::VectorXd pull = -pulls[k] - gradient_change(positions, there, motions[k]), step;
-    restrict(pull);
-    const int iterations = conjugate_gradients(
-        pull, kTolerance,
-        [&](const Eigen::VectorXd& from, Eigen::VectorXd& product) {
-          product = gradient_change(positions, there, from);
-          restrict(product);
-        },
-        [&](const Eigen::VectorXd& residual, Eigen::VectorXd& z) {
-          if (!active_->precondition(residual, z)) z.setZero(residual.size());
-        },
-        step);
-    if (iterations < 0) return {};
-    answers.push_back(motions[k] + step);
-    forces.push_back(pulls[k] + gradient_change(positions, there, answers.back()));
-  }
-  return answers;
-}
-
 EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
                                                const Eigen::VectorXd& motion) {
   EquilibriumReport report;
@@ -258,6 +203,11 @@ EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
     active_->multiply_add(motion, pull);
   }
   const double before = norm_of(pull, false);
+  if (motion.isZero(0.0) && is_rounding(before, positions)) {
+    report.energy = allowed;
+    report.converged = true;
+    return report;
+  }
   if (!solve_for(positions, pull, step)) return report;
   active_->multiply_add(step, pull);
   report.residual = before > 0.0 ? norm_of(pull, false) / before : 0.0;
@@ -265,10 +215,6 @@ EquilibriumReport Equilibrium::linearised_step(Eigen::VectorXd& positions,
   report.energy = energy(positions);
   report.converged = positions.allFinite() && report.energy <= allowed;
   return report;
-}
-
-void Equilibrium::follow(Eigen::VectorXd& positions, const Eigen::VectorXd& motion) {
-  positions = moved(positions, response(positions, motion));
 }
 
 EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
@@ -283,18 +229,15 @@ EquilibriumReport Equilibrium::solve(Eigen::VectorXd& positions,
     const double out_of_balance = norm_of(forces, false);
     if (report.iterations > 0) penalty = penalties(positions);
     const double scale = std::max({at_start, norm_of(forces, true), norm_of(penalty, false)});
-    // Forces that are nothing but rounding are in balance.
-    const auto is_rounding = [&] {
-      return out_of_balance <= kRounding * largest_stiffness_ * extent(positions);
-    };
-    report.residual = scale > 0.0 && !is_rounding() ? out_of_balance / scale : 0.0;
+    const bool is_nothing = is_rounding(out_of_balance, positions);
+    report.residual = scale > 0.0 && !is_nothing ? out_of_balance / scale : 0.0;
     report.converged = report.residual <= options.tolerance;
     if (report.converged || report.iterations == options.max_iterations) return report;
     prepare(positions, nullptr);
     if (!is_prepared_ || !solve_for(positions, forces, step)) return report;
     if (!line_search(step, forces, positions, report.energy)) {
       // Nothing lower along the way downhill: as near as the numbers allow.
-      report.converged = is_rounding();
+      report.converged = is_rounding(out_of_balance, positions);
       if (report.converged) report.residual = 0.0;
       return report;
     }

@@ -65,6 +65,10 @@ void write_row(const Study& study, std::size_t row, const RowResult& result,
   append(samples, result.force);
   write_whole(path_of(row, folder, ".f64"), reinterpret_cast<const char*>(samples.data()),
               samples.size() * sizeof(double));
+  json effects = json::array();
+  for (const EffectCost& cost : result.effects) {
+    effects.push_back({cost.name, cost.seconds, cost.bytes});
+  }
   const std::string text = json{
       {"source", source_of(study, study.rows[row])},
       {"row", describe(study, study.rows[row])},
@@ -78,6 +82,8 @@ void write_row(const Study& study, std::size_t row, const RowResult& result,
       {"step_p99", result.step_p99},
       {"steps", result.steps},
       {"bytes", result.bytes},
+      {"run_seconds", result.run_seconds},
+      {"effects", effects},
       {"iterations", result.iterations},
       {"solver", result.solver},
       {"min_det_f", result.min_det_f},
@@ -107,6 +113,10 @@ std::optional<RowResult> read_row(const Study& study, std::size_t row, const std
     figures.at("step_p99").get_to(result.step_p99);
     figures.at("steps").get_to(result.steps);
     figures.at("bytes").get_to(result.bytes);
+    figures.at("run_seconds").get_to(result.run_seconds);
+    for (const json& cost : figures.at("effects")) {
+      result.effects.push_back({cost.at(0), cost.at(1), cost.at(2)});
+    }
     figures.at("iterations").get_to(result.iterations);
     figures.at("solver").get_to(result.solver);
     figures.at("min_det_f").get_to(result.min_det_f);

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <new>
+#include <numeric>
 
 namespace tissue {
 namespace {
@@ -147,6 +148,8 @@ void simulate(const Study& study, const StudyRow& row, const SamplePoints& point
   });
   result.bytes = memory.bytes();
   result.setup_seconds = making + record.seconds.front();
+  result.run_seconds = std::accumulate(record.seconds.begin(), record.seconds.end(), making);
+  result.effects = scene.effect_costs();
   std::vector<double> seconds;
   const bool swings = description.has<InertiaOptions>() || description.has<RecoveryOptions>();
   for (std::size_t i = 0; i < instants.size(); ++i) {

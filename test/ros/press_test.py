@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""A finger that presses in deformer_node, and what drivers do to it: a bag that starts again (P3), a driver
+that dies (P9)."""
+import rospy
+import rostest
+from soft_tissue_sim.msg import SimulationStatus
+
+from ball_volume import CENTRE, RADIUS
+from deformer_client import DeformerCase
+
+CENTRE_M = CENTRE * 1e-3
+FINGER = 0.004
+
+
+class Press(DeformerCase):
+    TOOLS = ("finger",)
+
+    def press(self, depth):
+        """The finger is so far below where it would touch the ball's top [m]."""
+        Press.places = {"finger": (CENTRE_M, CENTRE_M, CENTRE_M + RADIUS * 1e-3 + FINGER - depth)}
+        self.reach(lambda: "TOOL_LOST" not in self.status().flags)
+
+    def press_and_be_felt(self):
+        self.press(0.002)
+        self.reach(lambda: self.largest() > 0.001)
+
+    def test_1_a_finger_presses_and_what_that_costs_is_told_by_name(self):
+        self.assertEqual(self.largest(), 0.0)
+        self.press(-0.002)
+        self.assertEqual(self.largest(), 0.0)
+        self.press_and_be_felt()
+        status = self.status()
+        self.assertGreater(status.penetration, 0.0)
+        self.assertLess(status.penetration, 0.01 * FINGER)
+        self.assertEqual(list(status.flags), [])
+        costs = {effect.name: effect for effect in status.effects}
+        self.assertEqual(list(costs), ["contact", "inertia", "damping", "force_feedback"])
+        for cost in costs.values():
+            self.assertGreater(cost.seconds, 0.0, cost.name)
+            self.assertGreater(cost.bytes, 0, cost.name)
+
+    def test_2_P3_a_bag_that_starts_again_finds_the_tissue_at_rest(self):
+        self.press_and_be_felt()
+        Press.places = {}
+        flags = []
+        rospy.Subscriber("deformer_node/status", SimulationStatus, lambda status: flags.extend(status.flags))
+        # One pose, of long ago, beside the organ.
+        Press.behind = rospy.Duration(20)
+        self.send("finger", (CENTRE_M, CENTRE_M, 0.05))
+        self.reach(lambda: self.largest() == 0.0)
+        self.reach(lambda: self.status() and "TIME_JUMP" in flags)
+        self.press_and_be_felt()
+
+    def test_3_P9_a_driver_that_dies_while_it_presses_leaves_tissue_that_relaxes(self):
+        self.press_and_be_felt()
+        Press.places = {}
+        self.reach(lambda: "TOOL_LOST" in self.status().flags)
+        # The clouds go on while it swings back.
+        self.reach(lambda: self.largest() < 1e-5)
+        self.press_and_be_felt()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("soft_tissue_sim", "press", Press)
