@@ -67,7 +67,7 @@ TEST(Contact, P4_P7_WhatCannotBeFollowedIsClampedAndAToolThatCameOutIsFree) {
     // All the way, by hand.
     scene.reset();
     bool pushed_down = true;
-    for (double height = 0.004; height > -0.09; height -= 0.004) {
+    for (double height = 0.004; height > -0.09; height -= 0.006) {
       scene.step(above(height), 0.01);
       pushed_down = pushed_down && scene.tool_forces()[0]->z() > -1e-9;
       expect_valid();
