@@ -1,0 +1,168 @@
+// Recorded poses: only they and their stamps decide what happens.
+#include "support/mesh_checks.h"
+#include "support/pressing_scenes.h"
+#include "tissue/base/error.h"
+#include "tissue/simulate/playback.h"
+
+#include <random>
+
+namespace {
+
+using namespace tissue;
+using tissue_test::Case;
+using tissue_test::organ;
+
+constexpr std::int64_t kMillisecond = 1000000;
+
+const std::string kTwoFingers =
+    "[{name: left, shape: {sphere: 0.006}, mode: press}, "
+    "{name: right, shape: {sphere: 0.006}, mode: press}]";
+
+// What a cloud holds, and when.
+struct Cloud {
+  std::int64_t stamp;
+  std::vector<Vec3> places;
+  bool operator==(const Cloud& other) const {
+    return stamp == other.stamp && places == other.places;
+  }
+};
+
+// Two fingers press from both sides and go back; the right one's clock is a little off, and in the
+// middle it is silent for a while.
+std::vector<ToolSample> recording(std::int64_t start = 5000 * kMillisecond) {
+  std::vector<ToolSample> samples;
+  for (int i = 0; i < 30; ++i) {
+    const double depth = 0.0002 * std::min(i, 30 - i);
+    for (const std::size_t tool : {0u, 1u}) {
+      if (tool == 1 && i >= 12 && i < 24) continue;
+      const double side = tool == 0 ? -1.0 : 1.0;
+      samples.push_back(
+          {tool,
+           start + (20 * i + (i % 3 == 0 ? 0 : 3 * static_cast<int>(tool))) * kMillisecond,
+           {Vec3(side * (0.036 - depth), 0.0013, 0.0007)}});
+    }
+  }
+  return samples;
+}
+
+Scene scene_of(const Case& which, int threads = 1) {
+  return Scene(parse_scene(tissue_test::scene_text(which, kTwoFingers)), organ(), threads);
+}
+
+struct Played {
+  std::vector<Cloud> clouds;
+  std::size_t steps = 0, time_jumps = 0;
+};
+
+Played play(Scene scene, const std::vector<ToolSample>& samples, PlaybackOptions options = {}) {
+  Played played;
+  Playback playback(scene, options, [&](std::int64_t stamp) {
+    played.clouds.push_back({stamp, scene.state().positions});
+  });
+  for (const ToolSample& sample : samples) playback.add(sample);
+  playback.finish();
+  played.steps = playback.steps();
+  played.time_jumps = playback.time_jumps();
+  return played;
+}
+
+// As they may arrive: those of each tool in order.
+std::vector<ToolSample> shuffled(const std::vector<ToolSample>& samples, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::vector<ToolSample> result = samples;
+  for (int round = 0; round < 500; ++round) {
+    const std::size_t i = generator() % (result.size() - 1);
+    if (result[i].tool != result[i + 1].tool) std::swap(result[i], result[i + 1]);
+  }
+  return result;
+}
+
+TEST(Playback, HowPosesArriveAndHowManyThreadsThereAreDoesNotMatter) {
+  for (const Case& which : {Case{"linear"}, Case{"corotational", 1, ", inertia, damping"}}) {
+    const Played first = play(scene_of(which), recording());
+    ASSERT_GT(first.clouds.size(), 10u);
+    for (unsigned seed = 0; seed < 3; ++seed) {
+      EXPECT_EQ(play(scene_of(which), shuffled(recording(), seed)).clouds, first.clouds)
+          << which.name() << seed;
+    }
+    EXPECT_EQ(play(scene_of(which, 2), recording()).clouds, first.clouds) << which.name();
+  }
+}
+
+TEST(Playback, EveryPoseIsUsedOnceAndWhatHasOneStampIsOneStep) {
+  const std::vector<ToolSample> samples = recording();
+  std::vector<std::int64_t> stamps;
+  for (const ToolSample& sample : samples) stamps.push_back(sample.stamp);
+  std::sort(stamps.begin(), stamps.end());
+  const auto instants = std::unique(stamps.begin(), stamps.end()) - stamps.begin();
+  // One more where the right finger is lost.
+  EXPECT_EQ(play(scene_of({"linear"}), samples).steps, static_cast<std::size_t>(instants) + 1);
+}
+
+TEST(Playback, CloudsAreDueAtTheirRateAndTissueRelaxesInAGap) {
+  std::vector<ToolSample> samples = recording();
+  const std::int64_t end = samples.back().stamp;
+  // A second later something comes again.
+  samples.push_back({0, end + 1000 * kMillisecond, {Vec3(-0.05, 0.0, 0.0)}});
+  const Played played =
+      play(scene_of({"corotational", 1, ", inertia, {damping: {mass: 50}}"}), samples);
+  for (std::size_t i = 0; i + 1 < played.clouds.size(); ++i) {
+    EXPECT_GE(played.clouds[i + 1].stamp - played.clouds[i].stamp, 33 * kMillisecond);
+  }
+  const auto in_gap =
+      std::count_if(played.clouds.begin(), played.clouds.end(), [&](const Cloud& c) {
+        return c.stamp > end + 100 * kMillisecond && c.stamp < end + 1000 * kMillisecond;
+      });
+  EXPECT_GT(in_gap, 3);
+}
+
+TEST(Playback, P3_WhereStampsFallBackTheTissueStartsAgain) {
+  std::vector<ToolSample> twice = recording();
+  const Played once = play(scene_of({"linear"}), twice);
+  for (const ToolSample& sample : recording()) twice.push_back(sample);
+  const Played both = play(scene_of({"linear"}), twice);
+  EXPECT_EQ(both.time_jumps, 1u);
+  ASSERT_EQ(both.clouds.size(), 2 * once.clouds.size());
+  EXPECT_TRUE(std::equal(once.clouds.begin(), once.clouds.end(), both.clouds.begin()));
+  EXPECT_TRUE(std::equal(once.clouds.begin(), once.clouds.end(),
+                         both.clouds.begin() + static_cast<std::ptrdiff_t>(once.clouds.size())));
+  // Without a reset the tools are still there.
+  PlaybackOptions options;
+  options.reset_on_time_jump = false;
+  EXPECT_EQ(play(scene_of({"linear"}), twice, options).time_jumps, 1u);
+}
+
+TEST(Playback, AToolThatSaysNothingIsNotWaitedForForEver) {
+  Scene scene = scene_of({"linear"});
+  Playback playback(scene, {}, {});
+  for (int i = 0; i < 200; ++i) {
+    playback.add({0, 10 * i * kMillisecond, {Vec3(-0.0355, 0.0, 0.0)}});
+  }
+  // A second of stamps is a hundred poses.
+  EXPECT_EQ(playback.steps(), 100u);
+  playback.finish();
+  EXPECT_EQ(playback.steps(), 200u);
+}
+
+TEST(Playback, WhatMakesNoSenseIsRefused) {
+  Scene scene = scene_of({"linear"});
+  EXPECT_EQ(tissue_test::refusal([&] {
+              Playback(scene, {0.0, 30.0}, {});
+            }),
+            "E_PARAM: tool_timeout: 0 s is not between 0 and 1e6");
+  Playback playback(scene, {}, {});
+  EXPECT_EQ(tissue_test::refusal([&] {
+              playback.add({2, 0, {}});
+            }),
+            "E_PARAM: tool 2 is none of the 2 of the scene");
+  // The next pose finds everything as it was.
+  playback.add({0, 0, {Vec3(-0.05, 0.0, 0.0)}});
+  playback.finish();
+  playback.add({0, 10, {Vec3(std::nan(""), 0.0, 0.0)}});
+  EXPECT_THROW(playback.finish(), InputError);
+  playback.add({0, 20, {Vec3(-0.05, 0.0, 0.0)}});
+  playback.finish();
+  EXPECT_EQ(playback.steps(), 2u);
+}
+
+}  // namespace
