@@ -37,9 +37,8 @@ std::vector<ToolSample> recording(std::int64_t start = 5000 * kMillisecond) {
       if (tool == 1 && i >= 12 && i < 24) continue;
       const double side = tool == 0 ? -1.0 : 1.0;
       samples.push_back(
-          {tool,
-           start + (20 * i + (i % 3 == 0 ? 0 : 3 * static_cast<int>(tool))) * kMillisecond,
-           {Vec3(side * (0.036 - depth), 0.0013, 0.0007)}});
+          {tool, start + (20 * i + (i % 3 == 0 ? 0 : 3 * static_cast<int>(tool))) * kMillisecond,
+           ToolPose{Vec3(side * (0.036 - depth), 0.0013, 0.0007)}});
     }
   }
   return samples;
@@ -99,11 +98,41 @@ TEST(Playback, EveryPoseIsUsedOnceAndWhatHasOneStampIsOneStep) {
   EXPECT_EQ(play(scene_of({"linear"}), samples).steps, static_cast<std::size_t>(instants) + 1);
 }
 
+// A jaw that closes and opens on the way, heard of before or after the poses around it.
+TEST(Playback, JawsCloseAtTheirStampsHoweverTheyArrive) {
+  const std::string text = tissue_test::scene_text(
+      {"linear"},
+      "[{name: left, shape: {sphere: 0.006}, mode: press}, {name: forceps, shape: {sphere: 0.012}, "
+      "mode: grasp, input: {jaw: forceps/jaw/measured_js}}]");
+  std::vector<ToolSample> samples;
+  for (int i = 0; i < 20; ++i) {
+    const std::int64_t stamp = 20 * i * kMillisecond;
+    samples.push_back({1, stamp, ToolPose{Vec3(0.0305 + 0.0003 * i, 0.0, 0.0)}});
+    samples.push_back({1, stamp + kMillisecond, std::nullopt, i >= 5 && i < 15});
+  }
+  const auto played = [&](const std::vector<ToolSample>& order) {
+    return play(Scene(parse_scene(text), organ()), order);
+  };
+  const Played first = played(samples);
+  EXPECT_EQ(first.steps, 20u);
+  const Vec3 rest = organ()->rest[0].cast<double>();
+  const auto moves = [&](const Cloud& cloud) { return cloud.places[0] != rest; };
+  EXPECT_FALSE(moves(first.clouds.front()));
+  EXPECT_TRUE(std::any_of(first.clouds.begin(), first.clouds.end(), moves));
+  // Jaws late, then early.
+  std::stable_sort(samples.begin(), samples.end(), [](const ToolSample& a, const ToolSample& b) {
+    return a.stamp / (100 * kMillisecond) < b.stamp / (100 * kMillisecond) ||
+           (a.stamp / (100 * kMillisecond) == b.stamp / (100 * kMillisecond) &&
+            bool(a.pose) > bool(b.pose));
+  });
+  EXPECT_EQ(played(samples).clouds, first.clouds);
+}
+
 TEST(Playback, CloudsAreDueAtTheirRateAndTissueRelaxesInAGap) {
   std::vector<ToolSample> samples = recording();
   const std::int64_t end = samples.back().stamp;
   // A second later something comes again.
-  samples.push_back({0, end + 1000 * kMillisecond, {Vec3(-0.05, 0.0, 0.0)}});
+  samples.push_back({0, end + 1000 * kMillisecond, ToolPose{Vec3(-0.05, 0.0, 0.0)}});
   const Played played =
       play(scene_of({"corotational", 1, ", inertia, {damping: {mass: 50}}"}), samples);
   for (std::size_t i = 0; i + 1 < played.clouds.size(); ++i) {
@@ -136,7 +165,7 @@ TEST(Playback, AToolThatSaysNothingIsNotWaitedForForEver) {
   Scene scene = scene_of({"linear"});
   Playback playback(scene, {}, {});
   for (int i = 0; i < 200; ++i) {
-    playback.add({0, 10 * i * kMillisecond, {Vec3(-0.0355, 0.0, 0.0)}});
+    playback.add({0, 10 * i * kMillisecond, ToolPose{Vec3(-0.0355, 0.0, 0.0)}});
   }
   // A second of stamps is a hundred poses.
   EXPECT_EQ(playback.steps(), 100u);
@@ -156,11 +185,11 @@ TEST(Playback, WhatMakesNoSenseIsRefused) {
             }),
             "E_PARAM: tool 2 is none of the 2 of the scene");
   // The next pose finds everything as it was.
-  playback.add({0, 0, {Vec3(-0.05, 0.0, 0.0)}});
+  playback.add({0, 0, ToolPose{Vec3(-0.05, 0.0, 0.0)}});
   playback.finish();
-  playback.add({0, 10, {Vec3(std::nan(""), 0.0, 0.0)}});
+  playback.add({0, 10, ToolPose{Vec3(std::nan(""), 0.0, 0.0)}});
   EXPECT_THROW(playback.finish(), InputError);
-  playback.add({0, 20, {Vec3(-0.05, 0.0, 0.0)}});
+  playback.add({0, 20, ToolPose{Vec3(-0.05, 0.0, 0.0)}});
   playback.finish();
   EXPECT_EQ(playback.steps(), 2u);
 }

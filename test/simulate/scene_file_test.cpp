@@ -36,6 +36,27 @@ TEST(SceneFile, ReadsEveryKey) {
   EXPECT_EQ(scene.find<DensityResponseOptions>()->reference, 80.0);
   EXPECT_EQ(scene.find<RecoveryOptions>()->time, 0.5);
   EXPECT_TRUE(scene.has<FoldGuardOptions>());
+  EXPECT_EQ(scene.tools[0].pose_topic(), "stylus/measured_cp");
+  EXPECT_FALSE(scene.tools[0].input.has_grip());
+}
+
+TEST(SceneFile, ReadsHowADeviceSpeaks) {
+  const auto parse = [](const std::string& input) {
+    return parse_scene("model: linear\ntools: [{name: arm, mode: grasp, input: {" + input +
+                       "}}]\n");
+  };
+  const ToolDescription tool =
+      parse("pose: Geomagic/pose, button: b, scale: 0.001, frame: patient, state: s").tools[0];
+  EXPECT_EQ(tool.pose_topic(), "Geomagic/pose");
+  EXPECT_EQ(tool.input.scale, 0.001);
+  EXPECT_EQ(tool.input.frame, "patient");
+  EXPECT_EQ(tool.input.state, "s");
+  EXPECT_TRUE(tool.input.has_grip());
+  EXPECT_EQ(parse("jaw: j, closed_below: 0.2").tools[0].input.closed_below, 0.2);
+  EXPECT_EQ(tissue_test::refusal([&] { parse("jaw: j, button: b"); }),
+            "E_SCENE: scene: line 2, input: names a jaw and a button; one of them closes the tool");
+  EXPECT_EQ(tissue_test::refusal([&] { parse("scale: 0"); }),
+            "E_PARAM: scene: line 2, scale: 0 is not between 0 and 1e+06");
 }
 
 TEST(SceneFile, LeavesOutWhatIsNotNamed) {

@@ -5,17 +5,19 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <utility>
 
 namespace tissue {
 
-/// Where a tool was at an instant.
+/// What was heard of a tool: where it was at an instant, or that its jaw opened or closed.
 struct ToolSample {
   /// Its number in the scene.
   std::size_t tool = 0;
   /// [ns]
   std::int64_t stamp = 0;
-  ToolPose pose;
+  std::optional<ToolPose> pose;
+  std::optional<bool> closed = {};
 };
 
 struct PlaybackOptions {
@@ -32,7 +34,8 @@ struct PlaybackOptions {
 /// a step takes.
 ///
 /// Every pose is used once, in the order of stamps; what has one stamp is one step. A pose waits
-/// until every other tool has one that is not earlier, or has been silent for a second of stamps.
+/// until every other tool has one that is not earlier, and every jaw that the scene knows has been
+/// heard of, or they have been silent for a second of stamps.
 /// A gap longer than `tool_timeout` is a tool that was lost; where none is left, tissue relaxes in
 /// fixed steps. A cloud is due at the first step at least 1 / `cloud_rate` after the last.
 class Playback {
@@ -60,11 +63,18 @@ class Playback {
   using Time = std::pair<std::size_t, std::int64_t>;
   struct Waiting {
     Time time;
-    ToolPose pose;
+    std::optional<ToolPose> pose;
+    std::optional<bool> closed;
+  };
+  // What comes in order: poses of each tool, then jaws of each.
+  struct Stream {
+    std::deque<Waiting> waiting;
+    Time newest;
+    bool is_there;
   };
 
   std::optional<Time> next_time() const;
-  bool may_come(std::size_t tool, const Time& time) const;
+  bool may_come(const Stream& stream, const Time& time) const;
   void use(const Time& time);
   void start_again(std::int64_t stamp);
   void pass_silence(std::int64_t until);
@@ -76,12 +86,11 @@ class Playback {
   OnCloud on_cloud_;
   // [ns]; the second is the step in which tissue relaxes, too.
   std::int64_t timeout_, cloud_gap_;
-  // Of each tool: what waits and the newest that came; of all tools.
-  std::vector<std::deque<Waiting>> waiting_;
-  std::vector<Time> newest_;
+  std::vector<Stream> streams_;
   Time newest_of_all_;
-  // Of each tool, the stamp that was used last.
+  // Of each tool: the stamp that was used last, and whether its jaw is closed.
   std::vector<std::int64_t> used_;
+  std::vector<std::optional<bool>> closed_;
   std::size_t epoch_ = 0;
   bool is_started_ = false;
   std::int64_t now_ = 0, next_cloud_ = 0;

@@ -20,6 +20,25 @@ namespace tissue {
 /// vertices lie in it. One that presses is a sphere or a capsule.
 enum class ToolShape { kSphere, kPad, kCapsule };
 
+/// How a tool's device speaks, for whatever brings its messages: topics, and what they mean.
+struct ToolInput {
+  /// Topic of its poses; empty: `<tool>/measured_cp`.
+  std::string pose;
+  /// Topics of what opens and closes its jaw, at most one of them: an angle, or a button that is
+  /// pressed. A tool without either takes hold at the first touch.
+  std::string jaw, button;
+  /// The jaw is closed at angles below [rad].
+  double closed_below = 0.1;
+  /// Topic of a state in which it is not to be listened to; empty: none.
+  std::string state;
+  /// Positions are multiplied by this: 0.001 for millimetres.
+  double scale = 1.0;
+  /// In which its poses are, whatever they say; empty: as they say.
+  std::string frame;
+
+  bool has_grip() const { return !jaw.empty() || !button.empty(); }
+};
+
 /// A tool as a scene names it.
 struct ToolDescription {
   std::string name = "tool";
@@ -34,6 +53,9 @@ struct ToolDescription {
   /// `grasp` takes hold of the tissue when the jaw closes on it. `press` pushes it, by the effect
   /// `contact`; under closed_form it takes hold at the first touch.
   bool grasps = false;
+  ToolInput input = {};
+
+  std::string pose_topic() const { return input.pose.empty() ? name + "/measured_cp" : input.pose; }
 };
 
 /// Something to report: the centroid of all tissue denser than a value, or a place in the tissue.

@@ -34,25 +34,30 @@ Playback::Playback(Scene& scene, const PlaybackOptions& options, OnCloud on_clou
       on_cloud_(std::move(on_cloud)),
       timeout_(nanoseconds("tool_timeout", options.tool_timeout)),
       cloud_gap_(nanoseconds("cloud_rate", 1.0 / options.cloud_rate)),
-      waiting_(scene.description().tools.size()),
-      newest_(waiting_.size(), Time(0, kNever)),
       newest_of_all_(0, kNever),
-      used_(waiting_.size(), kNever),
-      tools_(waiting_.size()) {}
+      used_(scene.description().tools.size(), kNever),
+      closed_(used_.size()),
+      tools_(used_.size()) {
+  const std::vector<ToolDescription>& tools = scene.description().tools;
+  streams_.assign(tools.size(), {{}, {0, kNever}, true});
+  for (const ToolDescription& tool : tools) {
+    streams_.push_back({{}, {0, kNever}, tool.input.has_grip()});
+  }
+}
 
 void Playback::add(const ToolSample& sample) {
-  if (sample.tool >= waiting_.size()) {
+  if (sample.tool >= tools_.size()) {
     throw InputError(ErrorCode::kParam, "tool " + std::to_string(sample.tool) + " is none of the " +
-                                            std::to_string(waiting_.size()) + " of the scene");
+                                            std::to_string(tools_.size()) + " of the scene");
   }
-  Time& newest = newest_[sample.tool];
-  if (sample.stamp < newest.second) ++newest.first;
-  newest.second = sample.stamp;
-  newest_of_all_ = std::max(newest_of_all_, newest);
-  waiting_[sample.tool].push_back({newest, sample.pose});
+  Stream& stream = streams_[sample.pose ? sample.tool : tools_.size() + sample.tool];
+  if (sample.stamp < stream.newest.second) ++stream.newest.first;
+  stream.newest.second = sample.stamp;
+  newest_of_all_ = std::max(newest_of_all_, stream.newest);
+  stream.waiting.push_back({stream.newest, sample.pose, sample.closed});
   while (const std::optional<Time> next = next_time()) {
-    for (std::size_t tool = 0; tool < waiting_.size(); ++tool) {
-      if (may_come(tool, *next)) return;
+    for (const Stream& other : streams_) {
+      if (may_come(other, *next)) return;
     }
     use(*next);
   }
@@ -64,40 +69,49 @@ void Playback::finish() {
 
 std::optional<Playback::Time> Playback::next_time() const {
   std::optional<Time> first;
-  for (const std::deque<Waiting>& samples : waiting_) {
-    if (!samples.empty() && (!first || samples.front().time < *first)) first = samples.front().time;
+  for (const Stream& stream : streams_) {
+    if (stream.waiting.empty()) continue;
+    const Time& time = stream.waiting.front().time;
+    if (!first || time < *first) first = time;
   }
   return first;
 }
 
-// Whether a pose of that time, or an earlier one, of a tool of which none waits is to be waited
-// for.
-bool Playback::may_come(std::size_t tool, const Time& time) const {
-  if (!waiting_[tool].empty() || newest_[tool] >= time) return false;
+// Whether something of that time, or earlier, is to be waited for.
+bool Playback::may_come(const Stream& stream, const Time& time) const {
+  if (!stream.is_there || !stream.waiting.empty() || stream.newest >= time) return false;
   return newest_of_all_.first == time.first && newest_of_all_.second - time.second < kPatience;
 }
 
 void Playback::use(const Time& time) {
   const auto [epoch, stamp] = time;
+  ToolPoses poses(tools_.size());
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    std::deque<Waiting>& waiting = streams_[i].waiting;
+    if (waiting.empty() || waiting.front().time != time) continue;
+    const std::size_t tool = i % tools_.size();
+    if (waiting.front().pose) poses[tool] = waiting.front().pose;
+    if (waiting.front().closed) closed_[tool] = waiting.front().closed;
+    waiting.pop_front();
+  }
   if (!is_started_) {
     is_started_ = true;
     now_ = next_cloud_ = stamp;
   } else if (epoch != epoch_) {
     start_again(stamp);
-  } else {
-    pass_silence(stamp);
   }
   epoch_ = epoch;
+  if (std::none_of(poses.begin(), poses.end(), [](const auto& pose) { return bool(pose); })) return;
+  pass_silence(stamp);
   // What is nowhere has no way behind it.
   const std::int64_t gap = stamp - now_;
   const double dt = seconds(has_a_tool() ? gap : std::min(gap, cloud_gap_));
   const ToolPoses before = tools_;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
-    std::deque<Waiting>& samples = waiting_[tool];
-    if (samples.empty() || samples.front().time != time) continue;
-    tools_[tool] = samples.front().pose;
+    if (!poses[tool]) continue;
+    tools_[tool] = poses[tool];
+    if (closed_[tool]) tools_[tool]->closed = closed_[tool];
     used_[tool] = stamp;
-    samples.pop_front();
   }
   try {
     step(stamp, dt);

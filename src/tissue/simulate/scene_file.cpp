@@ -52,8 +52,29 @@ void read_shape(const YamlReader& shape, ToolDescription& tool) {
   }
 }
 
+ToolInput input_from(const YamlReader& reader) {
+  reader.require_keys({"pose", "jaw", "button", "closed_below", "state", "scale", "frame"});
+  ToolInput input;
+  const auto read_word = [&](const char* key, std::string& word) {
+    if (reader.has(key)) word = reader.at(key).word();
+  };
+  read_word("pose", input.pose);
+  read_word("jaw", input.jaw);
+  read_word("button", input.button);
+  read_word("state", input.state);
+  read_word("frame", input.frame);
+  if (!input.jaw.empty() && !input.button.empty()) {
+    reader.refuse("names a jaw and a button; one of them closes the tool");
+  }
+  if (reader.has("closed_below")) {
+    input.closed_below = reader.at("closed_below").number(-10.0, 10.0);
+  }
+  if (reader.has("scale")) input.scale = reader.at("scale").number(0.0, 1e6, true);
+  return input;
+}
+
 ToolDescription tool_from(const YamlReader& entry) {
-  entry.require_keys({"name", "shape", "mode"});
+  entry.require_keys({"name", "shape", "mode", "input"});
   ToolDescription tool;
   tool.name = entry.at("name").word();
   if (entry.has("shape")) read_shape(entry.at("shape"), tool);
@@ -64,6 +85,7 @@ ToolDescription tool_from(const YamlReader& entry) {
     }
     tool.grasps = mode == "grasp";
   }
+  if (entry.has("input")) tool.input = input_from(entry.at("input"));
   return tool;
 }
 
