@@ -1,7 +1,7 @@
 # Messages and services. Comes before any target, because catkin sets where targets go.
 set(TISSUE_ROS_PACKAGES
-  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater geometry_msgs roscpp sensor_msgs std_msgs tf2 tf2_geometry_msgs tf2_ros
-  visualization_msgs)
+  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater geometry_msgs rosbag roscpp sensor_msgs std_msgs tf2
+  tf2_geometry_msgs tf2_ros topic_tools visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS ${TISSUE_ROS_PACKAGES} message_generation)
 
 add_message_files(FILES

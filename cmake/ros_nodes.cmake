@@ -7,18 +7,24 @@ target_compile_definitions(tissue_point_file PRIVATE ${PCL_DEFINITIONS})
 target_link_libraries(tissue_point_file PUBLIC tissue_base PRIVATE ${PCL_LIBRARIES})
 
 add_library(tissue_ros
+  src/ros/bag_run.cpp
   src/ros/convert.cpp
   src/ros/deformer_node.cpp
+  src/ros/device_messages.cpp
   src/ros/display_mesh.cpp
   src/ros/markers.cpp
   src/ros/mesher_node.cpp
-  src/ros/pose_input.cpp
   src/ros/volume_node.cpp)
 target_include_directories(tissue_ros PUBLIC src SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(tissue_ros PUBLIC
   tissue_study tissue_triangle_surface tissue_mesh_file tissue_point_file
   ${catkin_LIBRARIES})
 add_dependencies(tissue_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+
+# Without ROS it reads no bags.
+target_link_libraries(run_scene tissue_ros)
+target_include_directories(run_scene PRIVATE src)
+target_compile_definitions(run_scene PRIVATE TISSUE_WITH_BAGS)
 
 foreach(node volume_node mesher_node deformer_node)
   add_executable(${node} src/ros/${node}_main.cpp src/tissue/base/memory_meter.cpp)

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 namespace tissue_ros {
 namespace {
@@ -215,6 +216,34 @@ std::vector<std::uint8_t> vertex_levels(const tissue::TetMesh& mesh) {
 
 std::string plain_frame(const std::string& frame_id) {
   return !frame_id.empty() && frame_id[0] == '/' ? frame_id.substr(1) : frame_id;
+}
+
+soft_tissue_sim::SimulationStatus to_message(const tissue::Scene& scene,
+                                             const tissue::StepReport& last_step) {
+  const tissue::DeformationQuality quality =
+      tissue::deformation_quality(scene.body(), scene.state());
+  soft_tissue_sim::SimulationStatus status;
+  status.scene = scene.description().name;
+  status.model = tissue::name(scene.description().model);
+  for (const tissue::EffectCost& cost : scene.effect_costs()) {
+    soft_tissue_sim::EffectCost effect;
+    effect.name = cost.name;
+    effect.seconds = cost.seconds;
+    effect.bytes = cost.bytes;
+    status.effects.push_back(effect);
+  }
+  status.iterations = static_cast<std::uint32_t>(last_step.iterations);
+  status.residual = last_step.residual;
+  status.solver = last_step.solver;
+  status.energy = last_step.energy.value_or(std::numeric_limits<double>::quiet_NaN());
+  status.min_det_f = quality.min_det_f;
+  status.inverted = quality.inverted;
+  status.penetration = last_step.penetration;
+  status.moved_vertices = last_step.moved_vertices;
+  if (last_step.clamped) status.flags.push_back("CLAMPED");
+  if (last_step.tool_inside) status.flags.push_back("TOOL_INSIDE");
+  if (last_step.not_converged) status.flags.push_back("NOT_CONVERGED");
+  return status;
 }
 
 }  // namespace tissue_ros

@@ -3,11 +3,12 @@
 #include "tissue/base/error.h"
 #include "tissue/base/tet_mesh.h"
 #include "tissue/field/volume.h"
-#include "tissue/simulate/body.h"
+#include "tissue/simulate/scene.h"
 
 #include <sensor_msgs/PointCloud2.h>
 #include <soft_tissue_sim/MeshStatistics.h>
 #include <soft_tissue_sim/Result.h>
+#include <soft_tissue_sim/SimulationStatus.h>
 #include <soft_tissue_sim/TetMesh.h>
 #include <soft_tissue_sim/Volume.h>
 
@@ -36,6 +37,10 @@ soft_tissue_sim::Result to_message(tissue::ErrorCode code, const std::string& se
 /// each vertex's tets, displacement the length by which it has moved [m].
 sensor_msgs::PointCloud2 cloud_message(const tissue::Body& body, const tissue::State& state,
                                        const std::vector<std::uint8_t>& levels);
+
+/// How a scene is and what its last step did. Header, mesh and counters are left open.
+soft_tissue_sim::SimulationStatus to_message(const tissue::Scene& scene,
+                                             const tissue::StepReport& last_step);
 
 /// The highest level of the tets at each vertex.
 std::vector<std::uint8_t> vertex_levels(const tissue::TetMesh& mesh);

@@ -2,15 +2,12 @@
 
 #include "ros/convert.h"
 #include "ros/markers.h"
-#include "ros/pose_input.h"
 #include "tissue/simulate/scene_file.h"
 
 #include <sensor_msgs/PointCloud2.h>
-#include <soft_tissue_sim/SimulationStatus.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace tissue_ros {
 namespace {
@@ -28,14 +25,16 @@ void require_positive(const char* name, double value) {
 
 DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
                            const DeformerNodeParameters& parameters)
-    : parameters_(parameters), diagnostics_(handle, private_handle) {
+    : parameters_(parameters), handle_(handle), diagnostics_(handle, private_handle) {
   require_positive("tool_timeout", parameters.tool_timeout);
   require_positive("cloud_rate", parameters.cloud_rate);
   require_positive("marker_rate", parameters.marker_rate);
   require_positive("status_rate", parameters.status_rate);
   if (!parameters.scene.empty()) scene_ = tissue::read_scene(parameters.scene);
 
-  cloud_publisher_ = handle.advertise<sensor_msgs::PointCloud2>("deformed_cloud", 2);
+  // Live, an old cloud is of no use; of a replay, none may be missing.
+  cloud_publisher_ = handle.advertise<sensor_msgs::PointCloud2>(
+      "deformed_cloud", parameters.deterministic ? 1000 : 2);
   marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("deformed_markers", 1);
   status_publisher_ = private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1);
   using TetMesh = soft_tissue_sim::TetMesh;
@@ -43,13 +42,9 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
       "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
   tools_.resize(scene_.tools.size());
   heard_.resize(scene_.tools.size());
-  using PoseStamped = geometry_msgs::PoseStamped;
-  for (std::size_t i = 0; i < scene_.tools.size(); ++i) {
-    pose_subscribers_.push_back(handle.subscribe<PoseStamped>(
-        scene_.tools[i].name + "/measured_cp", 1,
-        [this, i](const PoseStamped::ConstPtr& pose) { take_pose(i, *pose); }, ros::VoidConstPtr(),
-        ros::TransportHints().tcpNoDelay()));
-  }
+  closed_.resize(scene_.tools.size());
+  enabled_.assign(scene_.tools.size(), 1);
+  if (!parameters.deterministic) listen_to_tools();
 
   const auto every = [&](double rate, void (DeformerNode::*work)()) {
     timers_.push_back(handle.createWallTimer(
@@ -58,8 +53,12 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
           if (!outcome.ok()) ROS_ERROR_THROTTLE(1.0, "deformer_node: %s", outcome.sentence.c_str());
         }));
   };
-  every(parameters.cloud_rate, &DeformerNode::watch_tool);
-  every(parameters.cloud_rate, &DeformerNode::publish_cloud);
+  if (parameters.deterministic) {
+    every(10.0, &DeformerNode::finish_replay);
+  } else {
+    every(parameters.cloud_rate, &DeformerNode::watch_tool);
+    every(parameters.cloud_rate, &DeformerNode::publish_cloud);
+  }
   every(parameters.marker_rate, &DeformerNode::publish_markers);
   every(parameters.status_rate, &DeformerNode::publish_status);
   diagnostics_.setHardwareID("none");
@@ -78,8 +77,14 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
     tissue::Scene scene(scene_, std::move(body));
     // A solid takes its weight before any tool comes.
     last_step_ = scene.step(tissue::ToolPoses(scene_.tools.size()), 0.0);
-    simulation_.emplace(
-        Simulation{std::move(mesh), std::move(levels), std::move(display), std::move(scene)});
+    std::vector<DeviceReader> readers;
+    for (const tissue::ToolDescription& tool : scene_.tools) {
+      readers.emplace_back(tool, readers.size(), mesh.frame_id, &transforms_);
+    }
+    simulation_.reset();
+    simulation_.emplace(Simulation{std::move(mesh), std::move(levels), std::move(display),
+                                   std::move(scene), std::move(readers), std::nullopt});
+    if (parameters_.deterministic) replay();
   });
   if (!outcome.ok()) {
     ++rejected_meshes_;
@@ -94,57 +99,121 @@ void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
            simulation_->mesh.tets.size());
 }
 
-void DeformerNode::take_pose(std::size_t tool, const geometry_msgs::PoseStamped& pose) {
-  const Outcome outcome = guarded([&] {
-    if (!simulation_) {
-      ROS_WARN_ONCE("deformer_node: no mesh yet, poses are ignored");
-      return;
-    }
-    const std::string problem = pose_problem(pose);
-    if (!problem.empty()) {
-      drop_pose(problem);
-      return;
-    }
-    std::string why_not;
-    const auto transformed = pose_in_frame(pose, simulation_->mesh.frame_id, transforms_, why_not);
-    if (transformed) {
-      move_to(tool, *transformed);
-    } else {
-      drop_pose(why_not);
-    }
-  });
-  if (!outcome.ok()) drop_pose(outcome.sentence);
+void DeformerNode::listen(const std::string& topic, std::function<void(const AnyMessage&)> take) {
+  // A live tool's newest pose wins; of a replay each is used.
+  constexpr std::uint32_t kAll = 100000;
+  tool_subscribers_.push_back(handle_.subscribe<AnyMessage>(
+      topic, parameters_.deterministic ? kAll : 1,
+      [this, take = std::move(take)](const AnyMessage::ConstPtr& message) {
+        if (!simulation_) {
+          ROS_WARN_ONCE("deformer_node: no mesh yet, poses are ignored");
+          return;
+        }
+        const Outcome outcome = guarded([&] { take(*message); });
+        if (!outcome.ok()) drop_pose(outcome.sentence);
+      },
+      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
 }
 
-void DeformerNode::move_to(std::size_t tool, const geometry_msgs::PoseStamped& pose) {
+void DeformerNode::listen_to_tools() {
+  for (std::size_t i = 0; i < scene_.tools.size(); ++i) {
+    const tissue::ToolInput& input = scene_.tools[i].input;
+    listen(scene_.tools[i].pose_topic(),
+           [this, i](const AnyMessage& message) { take_pose(i, message); });
+    const auto take_it = [this, i](const AnyMessage& message) { take_grip(i, message); };
+    if (!input.jaw.empty()) listen(input.jaw, take_it);
+    if (!input.button.empty()) listen(input.button, take_it);
+    if (input.state.empty()) continue;
+    listen(input.state, [this, i](const AnyMessage& message) {
+      enabled_[i] = simulation_->readers[i].is_enabled(message) ? 1 : 0;
+    });
+  }
+}
+
+void DeformerNode::take_pose(std::size_t tool, const AnyMessage& message) {
+  const tissue::ToolSample sample = simulation_->readers[tool].pose(message);
+  if (simulation_->playback) {
+    heard_[tool] = ros::WallTime::now();
+    simulation_->playback->add(sample);
+  } else if (enabled_[tool] != 0) {
+    move_to(sample);
+  }
+}
+
+void DeformerNode::take_grip(std::size_t tool, const AnyMessage& message) {
+  const auto sample = simulation_->readers[tool].grip(message);
+  if (!sample) return;
+  if (simulation_->playback) {
+    simulation_->playback->add(*sample);
+  } else {
+    closed_[tool] = sample->closed;
+  }
+}
+
+void DeformerNode::replay() {
+  tissue::PlaybackOptions options;
+  options.tool_timeout = parameters_.tool_timeout;
+  options.cloud_rate = parameters_.cloud_rate;
+  options.reset_on_time_jump = parameters_.reset_on_time_jump;
+  simulation_->playback.emplace(
+      simulation_->scene, options,
+      [this](std::int64_t stamp) {
+        stamp_.fromNSec(static_cast<std::uint64_t>(stamp));
+        publish_cloud();
+      },
+      [this](const tissue::StepReport& step, double seconds) { count_step(step, seconds); });
+  if (tool_subscribers_.empty()) listen_to_tools();
+}
+
+// When a bag is over nothing comes that would push out what waits.
+void DeformerNode::finish_replay() {
+  const auto is_silent = [](const ros::WallTime& heard) {
+    return (ros::WallTime::now() - heard).toSec() > 1.0;
+  };
+  if (!simulation_ || !simulation_->playback) return;
+  if (std::all_of(heard_.begin(), heard_.end(), is_silent)) simulation_->playback->finish();
+}
+
+void DeformerNode::count_step(const tissue::StepReport& step, double seconds) {
+  last_step_ = step;
+  step_seconds_ = seconds;
+}
+
+const tissue::ToolPoses& DeformerNode::tools() const {
+  return simulation_ && simulation_->playback ? simulation_->playback->tools() : tools_;
+}
+
+void DeformerNode::move_to(const tissue::ToolSample& sample) {
+  ros::Time stamp;
+  stamp.fromNSec(static_cast<std::uint64_t>(sample.stamp));
   // A bag that starts again, or a clock that was set back: the tissue starts again too. Tools of
   // their own clocks may be a little behind each other.
-  const ros::Duration behind = stamp_ - pose.header.stamp;
+  const ros::Duration behind = stamp_ - stamp;
   if (behind > ros::Duration(tools_.size() > 1 ? parameters_.tool_timeout : 0.0)) {
-    simulation_->scene.reset();
-    simulation_->scene.step(tissue::ToolPoses(tools_.size()), 0.0);
+    if (parameters_.reset_on_time_jump) {
+      simulation_->scene.reset();
+      simulation_->scene.step(tissue::ToolPoses(tools_.size()), 0.0);
+      lose_tools();
+    }
     time_jumped_ = true;
-    lose_tools();
-    stamp_ = pose.header.stamp;
+    stamp_ = stamp;
   }
-  const double dt = has_a_tool() ? std::max(0.0, (pose.header.stamp - stamp_).toSec()) : 0.0;
-  const auto& p = pose.pose.position;
-  const auto& q = pose.pose.orientation;
+  const double dt = has_a_tool() ? std::max(0.0, (stamp - stamp_).toSec()) : 0.0;
   tissue::ToolPoses tools = tools_;
-  tools[tool] = tissue::ToolPose{tissue::Vec3(p.x, p.y, p.z), std::nullopt,
-                                 Eigen::Quaterniond(q.w, q.x, q.y, q.z)};
+  tools[sample.tool] = sample.pose;
+  tools[sample.tool]->closed = closed_[sample.tool];
   const ros::WallTime start = ros::WallTime::now();
-  last_step_ = simulation_->scene.step(tools, dt);
-  step_seconds_ = (ros::WallTime::now() - start).toSec();
+  const tissue::StepReport step = simulation_->scene.step(tools, dt);
+  count_step(step, (ros::WallTime::now() - start).toSec());
   tools_ = std::move(tools);
-  stamp_ = std::max(stamp_, pose.header.stamp);
-  heard_[tool] = ros::WallTime::now();
+  stamp_ = std::max(stamp_, stamp);
+  heard_[sample.tool] = ros::WallTime::now();
 }
 
 void DeformerNode::lose_tools() { tools_.assign(tools_.size(), std::nullopt); }
 
 bool DeformerNode::has_a_tool() const {
-  return std::any_of(tools_.begin(), tools_.end(), [](const auto& tool) { return bool(tool); });
+  return std::any_of(tools().begin(), tools().end(), [](const auto& tool) { return bool(tool); });
 }
 
 void DeformerNode::drop_pose(const std::string& why) {
@@ -183,12 +252,12 @@ void DeformerNode::publish_markers() {
   const std::string& frame = simulation_->mesh.frame_id;
   auto markers = level_markers(
       simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return positions[v]; }, frame);
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
+  for (std::size_t i = 0; i < tools().size(); ++i) {
     const tissue::ToolDescription& tool = scene_.tools[i];
-    markers.markers.push_back(ball_marker(tool.name,
-                                          tools_[i] ? tools_[i]->position : tissue::Vec3::Zero(),
+    const std::optional<tissue::ToolPose>& pose = tools()[i];
+    markers.markers.push_back(ball_marker(tool.name, pose ? pose->position : tissue::Vec3::Zero(),
                                           tool.radius, 1.0f, frame));
-    if (!tools_[i]) markers.markers.back().action = visualization_msgs::Marker::DELETE;
+    if (!pose) markers.markers.back().action = visualization_msgs::Marker::DELETE;
   }
   marker_publisher_.publish(markers_are_new_ ? replacing_all(markers) : markers);
   markers_are_new_ = false;
@@ -197,39 +266,18 @@ void DeformerNode::publish_markers() {
 void DeformerNode::publish_status() {
   diagnostics_.update();
   if (!simulation_ || status_publisher_.getNumSubscribers() == 0) return;
-  const tissue::Scene& scene = simulation_->scene;
-  const tissue::DeformationQuality quality =
-      tissue::deformation_quality(scene.body(), scene.state());
-  soft_tissue_sim::SimulationStatus status;
+  soft_tissue_sim::SimulationStatus status = to_message(simulation_->scene, last_step_);
   status.header.stamp = stamp_;
   status.header.frame_id = simulation_->mesh.frame_id;
   status.mesh_uuid = simulation_->mesh.uuid;
-  status.scene = scene_.name;
-  status.model = tissue::name(scene_.model);
-  for (const tissue::EffectCost& cost : scene.effect_costs()) {
-    soft_tissue_sim::EffectCost effect;
-    effect.name = cost.name;
-    effect.seconds = cost.seconds;
-    effect.bytes = cost.bytes;
-    status.effects.push_back(effect);
-  }
   status.step_seconds = step_seconds_;
-  status.iterations = static_cast<std::uint32_t>(last_step_.iterations);
-  status.residual = last_step_.residual;
-  status.solver = last_step_.solver;
-  status.energy = last_step_.energy.value_or(std::numeric_limits<double>::quiet_NaN());
-  status.min_det_f = quality.min_det_f;
-  status.inverted = quality.inverted;
-  status.penetration = last_step_.penetration;
-  status.moved_vertices = last_step_.moved_vertices;
   status.dropped_poses = dropped_poses_;
   status.rejected_meshes = rejected_meshes_;
-  if (last_step_.clamped) status.flags.push_back("CLAMPED");
-  if (last_step_.tool_inside) status.flags.push_back("TOOL_INSIDE");
-  if (last_step_.not_converged) status.flags.push_back("NOT_CONVERGED");
   if (!tools_.empty() && !has_a_tool()) status.flags.push_back("TOOL_LOST");
-  if (time_jumped_) status.flags.push_back("TIME_JUMP");
+  const std::size_t jumps = simulation_->playback ? simulation_->playback->time_jumps() : 0;
+  if (time_jumped_ || jumps > time_jumps_told_) status.flags.push_back("TIME_JUMP");
   time_jumped_ = false;
+  time_jumps_told_ = jumps;
   status_publisher_.publish(status);
 }
 

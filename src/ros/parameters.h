@@ -82,6 +82,8 @@ struct MesherNodeParameters {
 
 struct DeformerNodeParameters {
   std::string scene;
+  bool deterministic = false;
+  bool reset_on_time_jump = true;
   double tool_timeout = 0.1;
   double cloud_rate = 30.0;
   double marker_rate = 10.0;
@@ -93,6 +95,8 @@ struct DeformerNodeParameters {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("scene", scene);
+    visitor("deterministic", deterministic);
+    visitor("reset_on_time_jump", reset_on_time_jump);
     visitor("tool_timeout", tool_timeout);
     visitor("cloud_rate", cloud_rate);
     visitor("marker_rate", marker_rate);

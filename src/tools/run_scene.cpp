@@ -5,6 +5,10 @@
 #include "tissue/simulate/scene_file.h"
 #include "tissue/simulate/scene_run.h"
 
+#ifdef TISSUE_WITH_BAGS
+#include "ros/bag_run.h"
+#endif
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -19,7 +23,8 @@ using tissue::ErrorCode;
 using tissue::InputError;
 
 struct Arguments {
-  std::string scene, mesh, output, stats;
+  std::string scene, mesh, output, stats, bag, cloud_bag;
+  double cloud_rate = 30.0;
   std::vector<std::string> paths;
   int threads = 1;
 };
@@ -34,6 +39,11 @@ po::options_description options() {
       "path", po::value<std::vector<std::string>>()->composing(),
       "poses t,x,y,z,qx,qy,qz,qw[,grip] of a tool (s, m); of the first without a name")(
       "threads", po::value<int>()->default_value(1), "threads; the result is the same")(
+#ifdef TISSUE_WITH_BAGS
+      "bag", po::value<std::string>(), "bag with what the tools said, on the scene's topics")(
+      "cloud-bag", po::value<std::string>(), "bag for the clouds that deformer_node would publish")(
+      "cloud-rate", po::value<double>()->default_value(30.0), "clouds per second of stamps")(
+#endif
       "output,o", po::value<std::string>(), "VTU file: the mesh at rest with its displacement")(
       "stats", po::value<std::string>(), "JSON file of figures")("help,h", "show this");
   return all;
@@ -50,6 +60,15 @@ Arguments arguments_from(const po::variables_map& given) {
   arguments.output = required("output");
   if (given.count("stats") != 0) arguments.stats = given["stats"].as<std::string>();
   if (given.count("path") != 0) arguments.paths = given["path"].as<std::vector<std::string>>();
+  if (given.count("bag") != 0) arguments.bag = given["bag"].as<std::string>();
+  if (given.count("cloud-bag") != 0) arguments.cloud_bag = given["cloud-bag"].as<std::string>();
+  if (given.count("cloud-rate") != 0) arguments.cloud_rate = given["cloud-rate"].as<double>();
+  if (!arguments.bag.empty() && !arguments.paths.empty()) {
+    throw InputError(ErrorCode::kParam, "--bag: the tools have paths already, from --path");
+  }
+  if (!arguments.cloud_bag.empty() && arguments.bag.empty()) {
+    throw InputError(ErrorCode::kParam, "--cloud-bag: clouds have the stamps of a --bag");
+  }
   arguments.threads = given["threads"].as<int>();
   if (arguments.threads < 1 || arguments.threads > 1024) {
     throw InputError(ErrorCode::kParam, "--threads: " + std::to_string(arguments.threads) +
@@ -141,17 +160,30 @@ void write_result(const tissue::TetMesh& mesh, const tissue::Scene& scene,
   tissue::write_mesh(mesh, path, fields, displacements);
 }
 
-void run(const Arguments& arguments) {
-  const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
+tissue::RunRecord moved(tissue::Scene& scene, const tissue::TetMesh& mesh,
+                        const Arguments& arguments) {
+#ifdef TISSUE_WITH_BAGS
+  if (!arguments.bag.empty()) {
+    return tissue_ros::run_bag(scene, mesh,
+                               {arguments.bag, arguments.cloud_bag, arguments.cloud_rate},
+                               [](double part) { tissue_tools::show_progress(part, "bag"); });
+  }
+#endif
+  static_cast<void>(mesh);
   const std::vector<tissue::Instant> instants =
-      instants_of(description, read_paths(description, arguments.paths));
-  const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
-  tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
-                      arguments.threads);
-  const tissue::RunRecord record = run_along(scene, instants, [&](std::size_t done) {
+      instants_of(scene.description(), read_paths(scene.description(), arguments.paths));
+  return run_along(scene, instants, [&](std::size_t done) {
     tissue_tools::show_progress(static_cast<double>(done) / static_cast<double>(instants.size()),
                                 "step " + std::to_string(done));
   });
+}
+
+void run(const Arguments& arguments) {
+  const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
+  const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
+  tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
+                      arguments.threads);
+  const tissue::RunRecord record = moved(scene, mesh, arguments);
   write_result(mesh, scene, arguments.output);
   const nlohmann::json stats = figures(scene, record);
   if (!arguments.stats.empty()) {

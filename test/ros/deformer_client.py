@@ -38,8 +38,11 @@ class DeformerCase(unittest.TestCase):
 
     @classmethod
     def send_poses(cls, _):
-        for name, place in list(cls.places.items()):
-            cls.send(name, place)
+        try:
+            for name, place in list(cls.places.items()):
+                cls.send(name, place)
+        except rospy.ROSException:
+            pass  # The test is over.
 
     @classmethod
     def send(cls, name, place):

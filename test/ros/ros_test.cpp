@@ -2,7 +2,6 @@
 #include "ros/display_mesh.h"
 #include "ros/markers.h"
 #include "ros/parameters.h"
-#include "ros/pose_input.h"
 #include "ros/volume_node.h"
 #include "support/mesh_checks.h"
 #include "support/shapes.h"
@@ -178,49 +177,6 @@ TEST(DisplayMesh, KeepsToItsBudgetAndShowsTheInside) {
     const DisplayMesh few = display_mesh(mesh, section_from("y", 0.5), budget);
     EXPECT_LE(few.hull.size() + few.cut.size(), budget);
     EXPECT_GT(few.hull.size() + few.cut.size(), budget / 5);
-  }
-}
-
-geometry_msgs::PoseStamped sound_pose() {
-  geometry_msgs::PoseStamped pose;
-  pose.header.stamp = ros::Time(1.0);
-  pose.header.frame_id = "patient";
-  pose.pose.orientation.w = 1.0;
-  return pose;
-}
-
-TEST(PoseInput, P1_P2_NamesWhatIsWrongWithAPose) {
-  EXPECT_EQ(pose_problem(sound_pose()), "");
-  auto pose = sound_pose();
-  pose.pose.position.y = HUGE_VAL;
-  EXPECT_EQ(pose_problem(pose), "pose.position is not finite");
-  for (const double w : {0.0, 0.89, 1.11, std::nan("")}) {
-    pose = sound_pose();
-    pose.pose.orientation.w = w;
-    EXPECT_EQ(pose_problem(pose).substr(0, 25), "pose.orientation has norm") << w;
-  }
-  for (const double w : {0.91, 1.09}) {
-    pose = sound_pose();
-    pose.pose.orientation.w = w;
-    EXPECT_EQ(pose_problem(pose), "") << w;
-  }
-  pose = sound_pose();
-  pose.header.stamp = ros::Time();
-  EXPECT_NE(pose_problem(pose), "");
-}
-
-TEST(PoseInput, P6_WaitsForNoTransform) {
-  const tf2_ros::Buffer empty;
-  std::string why_not;
-  auto pose = sound_pose();
-  EXPECT_TRUE(pose_in_frame(pose, "patient", empty, why_not));
-  pose.header.frame_id = "/patient";
-  EXPECT_TRUE(pose_in_frame(pose, "patient", empty, why_not));
-  for (const std::string frame : {"nowhere", ""}) {
-    pose.header.frame_id = frame;
-    why_not.clear();
-    EXPECT_FALSE(pose_in_frame(pose, "patient", empty, why_not));
-    EXPECT_NE(why_not, "");
   }
 }
 

@@ -155,6 +155,21 @@ TEST(Playback, P3_WhereStampsFallBackTheTissueStartsAgain) {
   EXPECT_TRUE(std::equal(once.clouds.begin(), once.clouds.end(), both.clouds.begin()));
   EXPECT_TRUE(std::equal(once.clouds.begin(), once.clouds.end(),
                          both.clouds.begin() + static_cast<std::ptrdiff_t>(once.clouds.size())));
+  // Also where linear systems are solved by iterations, which keep what serves them.
+  const auto ball = std::make_shared<Body>(body_of(tissue_test::refined_ball(0.02)));
+  const auto swinging = [&] {
+    return Scene(
+        parse_scene(tissue_test::scene_text({"corotational", 1, ", inertia"}, kTwoFingers)), ball);
+  };
+  std::vector<ToolSample> start = recording();
+  start.resize(24);
+  const std::size_t count = play(swinging(), start).clouds.size();
+  const std::vector<ToolSample> again = start;
+  start.insert(start.end(), again.begin(), again.end());
+  const std::vector<Cloud> clouds = play(swinging(), start).clouds;
+  ASSERT_EQ(clouds.size(), 2 * count);
+  EXPECT_TRUE(std::equal(clouds.begin(), clouds.begin() + static_cast<std::ptrdiff_t>(count),
+                         clouds.begin() + static_cast<std::ptrdiff_t>(count)));
   // Without a reset the tools are still there.
   PlaybackOptions options;
   options.reset_on_time_jump = false;

@@ -42,9 +42,11 @@ class Playback {
  public:
   /// What is called when a cloud is due, with its stamp [ns].
   using OnCloud = std::function<void(std::int64_t)>;
+  /// What is called after each step, with the seconds that it took.
+  using OnStep = std::function<void(const StepReport&, double)>;
 
   /// `scene` must outlive this. Throws InputError E_PARAM unless time-out and rate are positive.
-  Playback(Scene& scene, const PlaybackOptions& options, OnCloud on_cloud);
+  Playback(Scene& scene, const PlaybackOptions& options, OnCloud on_cloud, OnStep on_step = {});
 
   /// Takes the next sample of a tool and uses what can be used. Throws InputError E_PARAM for a
   /// tool that the scene has not, else as Scene::step does: that step's poses are then passed over.
@@ -53,7 +55,6 @@ class Playback {
   void finish();
 
   const ToolPoses& tools() const { return tools_; }
-  const StepReport& last_step() const { return last_step_; }
   /// How many steps there were, and how often stamps fell back.
   std::size_t steps() const { return steps_; }
   std::size_t time_jumps() const { return time_jumps_; }
@@ -84,6 +85,7 @@ class Playback {
   Scene& scene_;
   PlaybackOptions options_;
   OnCloud on_cloud_;
+  OnStep on_step_;
   // [ns]; the second is the step in which tissue relaxes, too.
   std::int64_t timeout_, cloud_gap_;
   std::vector<Stream> streams_;
@@ -95,7 +97,6 @@ class Playback {
   bool is_started_ = false;
   std::int64_t now_ = 0, next_cloud_ = 0;
   ToolPoses tools_;
-  StepReport last_step_;
   std::size_t steps_ = 0, time_jumps_ = 0;
 };
 

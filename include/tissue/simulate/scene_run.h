@@ -16,6 +16,8 @@ struct RunRecord {
   double penetration = 0.0;
   /// Of the last step.
   StepReport last;
+
+  void add(const StepReport& step, double wall_seconds);
 };
 
 /// Lets a scene go through the instants, in order; `after_step`, if there is any, hears how many

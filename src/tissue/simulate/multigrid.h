@@ -28,7 +28,10 @@ class Multigrid {
     return serves(iterations) && (iterations >= 0 || serves(iterate()));
   }
   /// What was kept is not kept any more.
-  void forget() { is_worn_ = true; }
+  void forget() {
+    is_worn_ = true;
+    fresh_iterations_ = wasted_iterations_ = 0;
+  }
 
   /// x = M⁻¹ b in the order of the hierarchy: writes right(), calls this, reads x().
   void cycle() { cycle(levels_.size()); }

@@ -3,6 +3,7 @@
 #include "tissue/base/error.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -28,10 +29,11 @@ double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanosecond
 
 }  // namespace
 
-Playback::Playback(Scene& scene, const PlaybackOptions& options, OnCloud on_cloud)
+Playback::Playback(Scene& scene, const PlaybackOptions& options, OnCloud on_cloud, OnStep on_step)
     : scene_(scene),
       options_(options),
       on_cloud_(std::move(on_cloud)),
+      on_step_(std::move(on_step)),
       timeout_(nanoseconds("tool_timeout", options.tool_timeout)),
       cloud_gap_(nanoseconds("cloud_rate", 1.0 / options.cloud_rate)),
       newest_of_all_(0, kNever),
@@ -85,6 +87,13 @@ bool Playback::may_come(const Stream& stream, const Time& time) const {
 
 void Playback::use(const Time& time) {
   const auto [epoch, stamp] = time;
+  if (!is_started_) {
+    is_started_ = true;
+    now_ = next_cloud_ = stamp;
+  } else if (epoch != epoch_) {
+    start_again(stamp);
+  }
+  epoch_ = epoch;
   ToolPoses poses(tools_.size());
   for (std::size_t i = 0; i < streams_.size(); ++i) {
     std::deque<Waiting>& waiting = streams_[i].waiting;
@@ -94,13 +103,6 @@ void Playback::use(const Time& time) {
     if (waiting.front().closed) closed_[tool] = waiting.front().closed;
     waiting.pop_front();
   }
-  if (!is_started_) {
-    is_started_ = true;
-    now_ = next_cloud_ = stamp;
-  } else if (epoch != epoch_) {
-    start_again(stamp);
-  }
-  epoch_ = epoch;
   if (std::none_of(poses.begin(), poses.end(), [](const auto& pose) { return bool(pose); })) return;
   pass_silence(stamp);
   // What is nowhere has no way behind it.
@@ -127,8 +129,9 @@ void Playback::start_again(std::int64_t stamp) {
   used_.assign(used_.size(), stamp);
   if (!options_.reset_on_time_jump) return;
   tools_.assign(tools_.size(), std::nullopt);
+  closed_.assign(closed_.size(), std::nullopt);
   scene_.reset();
-  last_step_ = scene_.step(tools_, 0.0);
+  scene_.step(tools_, 0.0);
 }
 
 // Tools that have no pose for too long are lost when that is over, and tissue relaxes.
@@ -152,7 +155,12 @@ void Playback::pass_silence(std::int64_t until) {
 }
 
 void Playback::step(std::int64_t stamp, double dt) {
-  last_step_ = scene_.step(tools_, dt);
+  const auto start = std::chrono::steady_clock::now();
+  const StepReport report = scene_.step(tools_, dt);
+  if (on_step_) {
+    on_step_(report,
+             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
   ++steps_;
   now_ = stamp;
   if (stamp < next_cloud_) return;

@@ -6,19 +6,24 @@
 
 namespace tissue {
 
+void RunRecord::add(const StepReport& step, double wall_seconds) {
+  last = step;
+  seconds.push_back(wall_seconds);
+  not_converged += step.not_converged;
+  clamped = clamped || step.clamped;
+  tool_inside = tool_inside || step.tool_inside;
+  penetration = std::max(penetration, step.penetration);
+}
+
 RunRecord run_along(Scene& scene, const std::vector<Instant>& instants,
                     const std::function<void(std::size_t done)>& after_step) {
   RunRecord record;
   for (std::size_t i = 0; i < instants.size(); ++i) {
     const double dt = i == 0 ? 0.0 : instants[i].time - instants[i - 1].time;
     const auto start = std::chrono::steady_clock::now();
-    record.last = scene.step(instants[i].tools, dt);
-    record.seconds.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    record.not_converged += record.last.not_converged;
-    record.clamped = record.clamped || record.last.clamped;
-    record.tool_inside = record.tool_inside || record.last.tool_inside;
-    record.penetration = std::max(record.penetration, record.last.penetration);
+    const StepReport report = scene.step(instants[i].tools, dt);
+    record.add(report,
+               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     if (after_step) after_step(i + 1);
   }
   return record;
