@@ -14,6 +14,9 @@ add_library(tissue_ros
   src/ros/display_mesh.cpp
   src/ros/markers.cpp
   src/ros/mesher_node.cpp
+  src/ros/scene_worker.cpp
+  src/ros/tool_listener.cpp
+  src/ros/tool_path_node.cpp
   src/ros/volume_node.cpp)
 target_include_directories(tissue_ros PUBLIC src SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(tissue_ros PUBLIC
@@ -26,13 +29,13 @@ target_link_libraries(run_scene tissue_ros)
 target_include_directories(run_scene PRIVATE src)
 target_compile_definitions(run_scene PRIVATE TISSUE_WITH_BAGS)
 
-foreach(node volume_node mesher_node deformer_node)
+foreach(node volume_node mesher_node deformer_node tool_path_node)
   add_executable(${node} src/ros/${node}_main.cpp src/tissue/base/memory_meter.cpp)
   target_link_libraries(${node} tissue_ros)
 endforeach()
 
 install(TARGETS
-    accuracy_study mesh_volume run_scene volume_node mesher_node deformer_node
+    accuracy_study mesh_volume run_scene volume_node mesher_node deformer_node tool_path_node
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS
     tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_refine tissue_ros

@@ -1,4 +1,4 @@
-#include "ros/bag_run.h"
+#include "tools/bag_run.h"
 
 #include "ros/convert.h"
 #include "ros/device_messages.h"

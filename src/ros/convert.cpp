@@ -218,14 +218,14 @@ std::string plain_frame(const std::string& frame_id) {
   return !frame_id.empty() && frame_id[0] == '/' ? frame_id.substr(1) : frame_id;
 }
 
-soft_tissue_sim::SimulationStatus to_message(const tissue::Scene& scene,
+soft_tissue_sim::SimulationStatus to_message(const tissue::SceneDescription& scene,
+                                             const std::vector<tissue::EffectCost>& costs,
+                                             const tissue::DeformationQuality& quality,
                                              const tissue::StepReport& last_step) {
-  const tissue::DeformationQuality quality =
-      tissue::deformation_quality(scene.body(), scene.state());
   soft_tissue_sim::SimulationStatus status;
-  status.scene = scene.description().name;
-  status.model = tissue::name(scene.description().model);
-  for (const tissue::EffectCost& cost : scene.effect_costs()) {
+  status.scene = scene.name;
+  status.model = tissue::name(scene.model);
+  for (const tissue::EffectCost& cost : costs) {
     soft_tissue_sim::EffectCost effect;
     effect.name = cost.name;
     effect.seconds = cost.seconds;

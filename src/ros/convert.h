@@ -39,7 +39,9 @@ sensor_msgs::PointCloud2 cloud_message(const tissue::Body& body, const tissue::S
                                        const std::vector<std::uint8_t>& levels);
 
 /// How a scene is and what its last step did. Header, mesh and counters are left open.
-soft_tissue_sim::SimulationStatus to_message(const tissue::Scene& scene,
+soft_tissue_sim::SimulationStatus to_message(const tissue::SceneDescription& scene,
+                                             const std::vector<tissue::EffectCost>& costs,
+                                             const tissue::DeformationQuality& quality,
                                              const tissue::StepReport& last_step);
 
 /// The highest level of the tets at each vertex.

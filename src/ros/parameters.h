@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tissue/refine/build_mesh.h"
+#include "tissue/simulate/force_loop.h"
 
 #include <string>
 #include <vector>
@@ -85,6 +86,8 @@ struct DeformerNodeParameters {
   bool deterministic = false;
   bool reset_on_time_jump = true;
   double tool_timeout = 0.1;
+  double max_force = tissue::ForceLoopOptions{}.max_force;
+  double max_force_rise = tissue::ForceLoopOptions{}.max_rise;
   double cloud_rate = 30.0;
   double marker_rate = 10.0;
   double status_rate = 2.0;
@@ -98,12 +101,43 @@ struct DeformerNodeParameters {
     visitor("deterministic", deterministic);
     visitor("reset_on_time_jump", reset_on_time_jump);
     visitor("tool_timeout", tool_timeout);
+    visitor("max_force", max_force);
+    visitor("max_force_rise", max_force_rise);
     visitor("cloud_rate", cloud_rate);
     visitor("marker_rate", marker_rate);
     visitor("status_rate", status_rate);
     visitor("marker_max_triangles", marker_max_triangles);
     visitor("section_axis", section_axis);
     visitor("section_at", section_at);
+  }
+};
+
+struct ToolPathNodeParameters {
+  std::string tool = "tool";
+  std::string frame_id = "patient";
+  std::string kind = "file";
+  std::string file;
+  std::vector<double> from;
+  std::vector<double> to;
+  std::vector<double> centre;
+  std::vector<double> axis = {0.0, 0.0, 1.0};
+  double radius = 0.01;
+  double period = 2.0;
+  double rate = 100.0;
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("tool", tool);
+    visitor("frame_id", frame_id);
+    visitor("kind", kind);
+    visitor("file", file);
+    visitor("from", from);
+    visitor("to", to);
+    visitor("centre", centre);
+    visitor("axis", axis);
+    visitor("radius", radius);
+    visitor("period", period);
+    visitor("rate", rate);
   }
 };
 

@@ -6,7 +6,7 @@
 #include "tissue/simulate/scene_run.h"
 
 #ifdef TISSUE_WITH_BAGS
-#include "ros/bag_run.h"
+#include "bag_run.h"
 #endif
 
 #include <nlohmann/json.hpp>
@@ -161,7 +161,7 @@ void write_result(const tissue::TetMesh& mesh, const tissue::Scene& scene,
 }
 
 tissue::RunRecord moved(tissue::Scene& scene, const tissue::TetMesh& mesh,
-                        const Arguments& arguments) {
+                        const std::vector<tissue::Instant>& instants, const Arguments& arguments) {
 #ifdef TISSUE_WITH_BAGS
   if (!arguments.bag.empty()) {
     return tissue_ros::run_bag(scene, mesh,
@@ -170,8 +170,7 @@ tissue::RunRecord moved(tissue::Scene& scene, const tissue::TetMesh& mesh,
   }
 #endif
   static_cast<void>(mesh);
-  const std::vector<tissue::Instant> instants =
-      instants_of(scene.description(), read_paths(scene.description(), arguments.paths));
+  static_cast<void>(arguments);
   return run_along(scene, instants, [&](std::size_t done) {
     tissue_tools::show_progress(static_cast<double>(done) / static_cast<double>(instants.size()),
                                 "step " + std::to_string(done));
@@ -180,10 +179,12 @@ tissue::RunRecord moved(tissue::Scene& scene, const tissue::TetMesh& mesh,
 
 void run(const Arguments& arguments) {
   const tissue::SceneDescription description = tissue::read_scene(arguments.scene);
+  const std::vector<tissue::Instant> instants =
+      instants_of(description, read_paths(description, arguments.paths));
   const tissue::TetMesh mesh = tissue::read_mesh(arguments.mesh);
   tissue::Scene scene(description, std::make_shared<tissue::Body>(tissue::body_of(mesh)),
                       arguments.threads);
-  const tissue::RunRecord record = moved(scene, mesh, arguments);
+  const tissue::RunRecord record = moved(scene, mesh, instants, arguments);
   write_result(mesh, scene, arguments.output);
   const nlohmann::json stats = figures(scene, record);
   if (!arguments.stats.empty()) {

@@ -1,10 +1,10 @@
 // What drivers say, in messages of their own definitions, and bags of it.
-#include "ros/bag_run.h"
 #include "ros/convert.h"
 #include "ros/device_messages.h"
 #include "support/bodies.h"
 #include "support/mesh_checks.h"
 #include "tissue/simulate/scene_file.h"
+#include "tools/bag_run.h"
 
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/TransformStamped.h>

@@ -1,8 +1,11 @@
 #!/usr/bin/env python3
-"""A finger that presses in deformer_node, and what drivers do to it: a bag that starts again (P3), a driver
-that dies (P9)."""
+"""A finger that presses in deformer_node and what it feels, and what drivers do to it: a bag that starts again
+(P3), a driver that dies (P9), two at once (P10)."""
+import subprocess
+
 import rospy
 import rostest
+from geometry_msgs.msg import WrenchStamped
 from soft_tissue_sim.msg import SimulationStatus
 
 from ball_volume import CENTRE, RADIUS
@@ -14,6 +17,17 @@ FINGER = 0.004
 
 class Press(DeformerCase):
     TOOLS = ("finger",)
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        # What it was told last that it feels [N].
+        cls.felt = None
+        rospy.Subscriber("finger/servo_cf", WrenchStamped, cls.feel)
+
+    @classmethod
+    def feel(cls, wrench):
+        cls.felt = wrench.wrench.force
 
     def press(self, depth):
         """The finger is so far below where it would touch the ball's top [m]."""
@@ -28,7 +42,13 @@ class Press(DeformerCase):
         self.assertEqual(self.largest(), 0.0)
         self.press(-0.002)
         self.assertEqual(self.largest(), 0.0)
+        self.reach(lambda: self.status() and self.felt is not None)
+        self.assertEqual(self.felt.z, 0.0)
         self.press_and_be_felt()
+        # Away from the ball, by as much as so soft a ball can.
+        self.reach(lambda: self.status() and self.felt.z > 0.002)
+        self.assertLess(self.felt.z, 0.2)
+        self.assertLess(abs(self.felt.x), 0.5 * self.felt.z)
         status = self.status()
         self.assertGreater(status.penetration, 0.0)
         self.assertLess(status.penetration, 0.01 * FINGER)
@@ -55,9 +75,27 @@ class Press(DeformerCase):
         self.press_and_be_felt()
         Press.places = {}
         self.reach(lambda: "TOOL_LOST" in self.status().flags)
+        self.assertEqual((self.felt.x, self.felt.y, self.felt.z), (0.0, 0.0, 0.0))
         # The clouds go on while it swings back.
         self.reach(lambda: self.largest() < 1e-5)
         self.press_and_be_felt()
+
+    def test_4_P10_a_second_driver_is_not_heard_until_the_first_is_silent(self):
+        self.press_and_be_felt()
+        dropped = self.status().dropped_poses
+        rospy.set_param("other", {"tool": "finger", "kind": "line", "from": [CENTRE_M, CENTRE_M, 0.05],
+                                  "to": [CENTRE_M, CENTRE_M, 0.06]})
+        other = subprocess.Popen(["rosrun", "soft_tissue_sim", "tool_path_node", "__name:=other"])
+        try:
+            self.reach(lambda: self.status().dropped_poses > dropped + 10)
+            self.assertGreater(self.largest(), 0.001)
+            # Far above, the other is heard at last.
+            Press.places = {}
+            self.reach(lambda: self.largest() < 1e-5)
+            self.reach(lambda: "TOOL_LOST" not in self.status().flags)
+        finally:
+            other.terminate()
+            other.wait()
 
 
 if __name__ == "__main__":

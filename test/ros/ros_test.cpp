@@ -2,6 +2,7 @@
 #include "ros/display_mesh.h"
 #include "ros/markers.h"
 #include "ros/parameters.h"
+#include "ros/tool_path_node.h"
 #include "ros/volume_node.h"
 #include "support/mesh_checks.h"
 #include "support/shapes.h"
@@ -47,6 +48,32 @@ TEST(Parameters, TheShippedFileHoldsTheDefaultsOfTheCode) {
   expect_defaults<VolumeNodeParameters>(yaml["volume_node"]);
   expect_defaults<MesherNodeParameters>(yaml["mesher_node"]);
   expect_defaults<DeformerNodeParameters>(yaml["deformer_node"]);
+  expect_defaults<ToolPathNodeParameters>(yaml["tool_path_node"]);
+}
+
+TEST(ToolPath, NamesTheParameterThatIsWrong) {
+  ToolPathNodeParameters parameters;
+  EXPECT_EQ(refusal([&] { path_of(parameters); }), "E_FILE: path: '' cannot be read");
+  parameters.kind = "spiral";
+  EXPECT_EQ(refusal([&] { path_of(parameters); }),
+            "E_PARAM: ~kind: 'spiral' is not file, line or circle");
+  parameters.kind = "line";
+  parameters.from = {0.0, 0.0};
+  EXPECT_EQ(refusal([&] { path_of(parameters); }), "E_PARAM: ~from: has 2 numbers, not x, y, z");
+  parameters.from = {0.0, 0.0, 0.0};
+  parameters.to = {0.0, 0.0, 0.1};
+  EXPECT_NEAR(pose_at(path_of(parameters), 0.5).position.z(), 0.05, 1e-15);
+  parameters.kind = "circle";
+  parameters.centre = {0.1, 0.0, 0.0};
+  const auto circle = path_of(parameters);
+  for (const double time : {0.0, 0.3, 1.7, 2.0}) {
+    const tissue::Vec3 arm = pose_at(circle, time).position - tissue::Vec3(0.1, 0.0, 0.0);
+    EXPECT_NEAR(arm.norm(), 0.01, 1e-6);
+    EXPECT_NEAR(arm.z(), 0.0, 1e-15);
+  }
+  parameters.period = 0.0;
+  EXPECT_EQ(refusal([&] { path_of(parameters); }),
+            "E_PARAM: ~period: 0 is not between 0 and 1e+06");
 }
 
 TEST(Result, HasTheConstantsOfTheCode) {

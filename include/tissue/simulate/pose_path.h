@@ -20,6 +20,18 @@ struct StampedPose {
 /// must not fall.
 std::vector<StampedPose> read_poses(const std::string& path);
 
+/// Where a path is at a time, between its poses along a straight line and the shortest turn; before
+/// its first and after its last pose there. Its grip is that of the pose before. `path` must not be
+/// empty.
+ToolPose pose_at(const std::vector<StampedPose>& path, double time);
+
+/// There and back along a straight line, evenly, in `period` seconds; from the start.
+std::vector<StampedPose> line_path(const Vec3& from, const Vec3& to, double period);
+/// Once around a circle about `axis`, in `period` seconds. Throws InputError E_PARAM for an axis of
+/// no length.
+std::vector<StampedPose> circle_path(const Vec3& centre, const Vec3& axis, double radius,
+                                     double period);
+
 /// One path for each tool of the scene, from files named `FILE` (for the first tool) or
 /// `TOOL=FILE`; empty for a tool without one. `locate` turns the name of a file into its path.
 /// Throws as read_poses(), and E_PARAM for a tool that the scene has not or that has two paths.

@@ -2,6 +2,7 @@
 
 #include "tissue/base/error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -92,6 +93,38 @@ std::vector<std::vector<StampedPose>> read_paths(
     paths[which] = read_poses(locate ? locate(file) : file);
   }
   return paths;
+}
+
+ToolPose pose_at(const std::vector<StampedPose>& path, double time) {
+  const auto after =
+      std::upper_bound(path.begin(), path.end(), time,
+                       [](double instant, const StampedPose& pose) { return instant < pose.time; });
+  if (after == path.begin()) return path.front().pose;
+  if (after == path.end()) return path.back().pose;
+  const StampedPose& before = *std::prev(after);
+  const double part = (time - before.time) / (after->time - before.time);
+  ToolPose pose = before.pose;
+  pose.position += part * (after->pose.position - before.pose.position);
+  pose.orientation = before.pose.orientation.slerp(part, after->pose.orientation);
+  return pose;
+}
+
+std::vector<StampedPose> line_path(const Vec3& from, const Vec3& to, double period) {
+  return {{0.0, {from}}, {0.5 * period, {to}}, {period, {from}}};
+}
+
+std::vector<StampedPose> circle_path(const Vec3& centre, const Vec3& axis, double radius,
+                                     double period) {
+  constexpr int kParts = 360;
+  if (!(axis.norm() > 0.0)) throw InputError(ErrorCode::kParam, "axis: has no length");
+  const Vec3 across = radius * axis.unitOrthogonal(), along = axis.normalized().cross(across);
+  std::vector<StampedPose> path;
+  for (int i = 0; i <= kParts; ++i) {
+    const double angle = 2.0 * M_PI * i / kParts;
+    path.push_back(
+        {period * i / kParts, {centre + std::cos(angle) * across + std::sin(angle) * along}});
+  }
+  return path;
 }
 
 std::vector<Instant> merged(const std::vector<std::vector<StampedPose>>& paths) {

@@ -1,0 +1,225 @@
+#include "ros/scene_worker.h"
+
+#include "ros/guarded.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace tissue_ros {
+namespace {
+
+// More than any bag has in the time that a step may take.
+constexpr std::size_t kMostWaiting = 100000;
+// When a bag is over nothing comes that would push out what waits [s].
+constexpr double kSilence = 1.0;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+bool has_any(const tissue::ToolPoses& tools) {
+  return std::any_of(tools.begin(), tools.end(), [](const auto& tool) { return bool(tool); });
+}
+
+}  // namespace
+
+SceneWorker::SceneWorker(tissue::Scene scene, const SceneWorkerOptions& options, OnCloud on_cloud,
+                         OnError on_error)
+    : options_(options),
+      on_cloud_(std::move(on_cloud)),
+      on_error_(std::move(on_error)),
+      scene_(std::move(scene)),
+      tools_(description().tools.size()),
+      closed_(tools_.size()),
+      state_(std::make_shared<tissue::State>(scene_.state())) {
+  inbox_.lost.resize(tools_.size());
+  if (options.deterministic) {
+    playback_.emplace(
+        scene_, options.playback,
+        [this](std::int64_t stamp) {
+          stamp_ = stamp;
+          if (on_cloud_) on_cloud_(stamp, scene_.state());
+        },
+        [this](const tissue::StepReport& report, double seconds) {
+          tell(report, seconds, playback_->tools());
+        });
+  }
+  // Tissue takes its weight before any tool comes.
+  step(tools_, 0.0);
+  state_ = std::make_shared<tissue::State>(scene_.state());
+  thread_ = std::thread([this] { run(); });
+}
+
+SceneWorker::~SceneWorker() {
+  {
+    const std::lock_guard<std::mutex> lock(inbox_mutex_);
+    inbox_.is_over = true;
+  }
+  arrived_.notify_one();
+  thread_.join();
+}
+
+bool SceneWorker::put(const tissue::ToolSample& sample) {
+  {
+    const std::lock_guard<std::mutex> lock(inbox_mutex_);
+    std::deque<tissue::ToolSample>& samples = inbox_.samples;
+    if (!options_.deterministic) {
+      // The newest of each kind wins.
+      const auto old = std::find_if(samples.begin(), samples.end(), [&](const auto& one) {
+        return one.tool == sample.tool && bool(one.pose) == bool(sample.pose);
+      });
+      if (old != samples.end()) samples.erase(old);
+      inbox_.lost[sample.tool] = 0;
+    }
+    if (samples.size() >= kMostWaiting) return false;
+    samples.push_back(sample);
+  }
+  arrived_.notify_one();
+  return true;
+}
+
+void SceneWorker::lose(std::size_t tool) {
+  {
+    const std::lock_guard<std::mutex> lock(inbox_mutex_);
+    inbox_.lost[tool] = 1;
+    inbox_.has_lost = true;
+  }
+  arrived_.notify_one();
+}
+
+std::shared_ptr<const tissue::State> SceneWorker::state() {
+  const std::unique_lock<std::mutex> scene_lock(scene_mutex_, std::try_to_lock);
+  const std::lock_guard<std::mutex> lock(view_mutex_);
+  if (!scene_lock.owns_lock()) {
+    // The step that runs leaves it.
+    state_is_wanted_ = true;
+  } else if (steps_of_state_ != steps_) {
+    state_ = std::make_shared<tissue::State>(scene_.state());
+    steps_of_state_ = steps_;
+  }
+  return state_;
+}
+
+std::shared_ptr<const SceneWorker::Progress> SceneWorker::progress() const {
+  const std::lock_guard<std::mutex> lock(view_mutex_);
+  return progress_;
+}
+
+SceneWorker::Inbox SceneWorker::next_inbox() {
+  std::unique_lock<std::mutex> lock(inbox_mutex_);
+  const double patience = options_.deterministic ? kSilence : 1.0 / options_.playback.cloud_rate;
+  arrived_.wait_for(lock, std::chrono::duration<double>(patience), [this] {
+    return inbox_.is_over || inbox_.has_lost || !inbox_.samples.empty();
+  });
+  Inbox inbox = inbox_;
+  inbox_.samples.clear();
+  inbox_.has_lost = false;
+  std::fill(inbox_.lost.begin(), inbox_.lost.end(), std::uint8_t{0});
+  return inbox;
+}
+
+void SceneWorker::run() {
+  for (;;) {
+    const Inbox inbox = next_inbox();
+    if (inbox.is_over) return;
+    const std::lock_guard<std::mutex> lock(scene_mutex_);
+    const Outcome outcome = guarded([&] {
+      if (options_.deterministic) {
+        replay(inbox);
+      } else {
+        follow(inbox);
+      }
+    });
+    if (!outcome.ok() && on_error_) on_error_(outcome.sentence);
+  }
+}
+
+void SceneWorker::replay(const Inbox& inbox) {
+  for (const tissue::ToolSample& sample : inbox.samples) {
+    const Outcome outcome = guarded([&] { playback_->add(sample); });
+    if (!outcome.ok() && on_error_) on_error_(outcome.sentence);
+  }
+  if (inbox.samples.empty()) playback_->finish();
+}
+
+// One step to the newest pose of each tool; without any, tissue that was let go relaxes.
+void SceneWorker::follow(const Inbox& inbox) {
+  tissue::ToolPoses tools = tools_;
+  std::int64_t stamp = 0;
+  for (const tissue::ToolSample& sample : inbox.samples) {
+    if (sample.closed) closed_[sample.tool] = sample.closed;
+    if (sample.pose) stamp = std::max(stamp, sample.stamp);
+  }
+  if (stamp != 0) {
+    start_again_if_behind(stamp);
+    tools = tools_;
+  }
+  bool loses = false;
+  for (std::size_t tool = 0; tool < tools.size(); ++tool) {
+    if (inbox.lost[tool] == 0 || !tools[tool]) continue;
+    tools[tool].reset();
+    loses = true;
+  }
+  const double relaxing = 1.0 / options_.playback.cloud_rate;
+  if (stamp == 0) {
+    // The first step without a tool lets go; the others relax.
+    if (loses || (!has_any(tools) && scene_.recovering())) step(tools, relaxing);
+    return;
+  }
+  for (const tissue::ToolSample& sample : inbox.samples) {
+    if (!sample.pose) continue;
+    tools[sample.tool] = sample.pose;
+    tools[sample.tool]->closed = closed_[sample.tool];
+  }
+  const double dt =
+      has_any(tools_) ? 1e-9 * static_cast<double>(std::max<std::int64_t>(stamp - stamp_, 0)) : 0.0;
+  stamp_ = std::max(stamp_, stamp);
+  step(tools, dt);
+}
+
+// A bag that starts again, or a clock that was set back: the tissue starts again too. Tools of
+// their own clocks may be a little behind each other.
+void SceneWorker::start_again_if_behind(std::int64_t stamp) {
+  const double behind = 1e-9 * static_cast<double>(stamp_ - stamp);
+  if (behind <= (tools_.size() > 1 ? options_.playback.tool_timeout : 0.0)) return;
+  ++time_jumps_;
+  stamp_ = stamp;
+  if (!options_.playback.reset_on_time_jump) return;
+  scene_.reset();
+  tools_.assign(tools_.size(), std::nullopt);
+  step(tools_, 0.0);
+}
+
+void SceneWorker::step(const tissue::ToolPoses& tools, double dt) {
+  const auto start = std::chrono::steady_clock::now();
+  const tissue::StepReport report = scene_.step(tools, dt);
+  tools_ = tools;
+  tell(report, seconds_since(start), tools);
+}
+
+void SceneWorker::tell(const tissue::StepReport& report, double seconds,
+                       const tissue::ToolPoses& tools) {
+  auto progress = std::make_shared<Progress>();
+  progress->report = report;
+  progress->step_seconds = seconds;
+  progress->stamp = stamp_;
+  progress->tools = tools;
+  progress->costs = scene_.effect_costs();
+  progress->steps = ++steps_;
+  progress->time_jumps = playback_ ? playback_->time_jumps() : time_jumps_;
+  const auto felt = scene_.tool_feedback();
+  progress->tissue.resize(tools.size());
+  for (std::size_t i = 0; i < felt.size(); ++i) {
+    if (!felt[i] || !tools[i] || report.not_converged) continue;
+    progress->tissue[i] = tissue::LocalTissue{tools[i]->position, felt[i]->wrench.force,
+                                              felt[i]->compliance, description().tools[i].grasps};
+  }
+  const std::lock_guard<std::mutex> lock(view_mutex_);
+  progress_ = std::move(progress);
+  if (!state_is_wanted_) return;
+  state_ = std::make_shared<tissue::State>(scene_.state());
+  steps_of_state_ = steps_;
+  state_is_wanted_ = false;
+}
+
+}  // namespace tissue_ros

@@ -1,0 +1,89 @@
+#include "ros/tool_path_node.h"
+
+#include "tissue/base/error.h"
+
+#include <geometry_msgs/PoseStamped.h>
+
+#include <cmath>
+
+namespace tissue_ros {
+namespace {
+
+using tissue::ErrorCode;
+using tissue::InputError;
+
+tissue::Vec3 place(const char* name, const std::vector<double>& numbers) {
+  if (numbers.size() != 3) {
+    throw InputError(ErrorCode::kParam, std::string("~") + name + ": has " +
+                                            std::to_string(numbers.size()) +
+                                            " numbers, not x, y, z");
+  }
+  for (const double number : numbers) {
+    if (!std::isfinite(number)) {
+      throw InputError(ErrorCode::kNonfinite, std::string("~") + name + ": is not finite");
+    }
+  }
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+void require_within(const char* name, double value, double highest) {
+  if (value > 0.0 && value <= highest) return;
+  throw InputError(ErrorCode::kParam, std::string("~") + name + ": " + tissue::to_text(value) +
+                                          " is not between 0 and " + tissue::to_text(highest));
+}
+
+}  // namespace
+
+std::vector<tissue::StampedPose> path_of(const ToolPathNodeParameters& parameters) {
+  require_within("period", parameters.period, 1e6);
+  if (parameters.kind == "line") {
+    const tissue::Vec3 from = place("from", parameters.from), to = place("to", parameters.to);
+    return tissue::line_path(from, to, parameters.period);
+  }
+  if (parameters.kind == "circle") {
+    require_within("radius", parameters.radius, 10.0);
+    const tissue::Vec3 centre = place("centre", parameters.centre),
+                       axis = place("axis", parameters.axis);
+    return tissue::circle_path(centre, axis, parameters.radius, parameters.period);
+  }
+  if (parameters.kind != "file") {
+    throw InputError(ErrorCode::kParam,
+                     "~kind: '" + parameters.kind + "' is not file, line or circle");
+  }
+  std::vector<tissue::StampedPose> path = tissue::read_poses(parameters.file);
+  if (path.empty()) {
+    throw InputError(ErrorCode::kFile, "~file: '" + parameters.file + "' has no poses");
+  }
+  return path;
+}
+
+ToolPathNode::ToolPathNode(ros::NodeHandle handle, const ToolPathNodeParameters& parameters)
+    : parameters_(parameters), path_(path_of(parameters)) {
+  require_within("rate", parameters.rate, 10000.0);
+  publisher_ = handle.advertise<geometry_msgs::PoseStamped>(parameters.tool + "/measured_cp", 1);
+  timer_ = handle.createWallTimer(ros::WallDuration(1.0 / parameters.rate),
+                                  [this](const ros::WallTimerEvent&) { publish(); });
+}
+
+void ToolPathNode::publish() {
+  if (publisher_.getNumSubscribers() == 0) return;
+  // It begins when somebody looks.
+  if (start_.isZero()) start_ = ros::WallTime::now();
+  const double first = path_.front().time, duration = path_.back().time - first,
+               gone = (ros::WallTime::now() - start_).toSec();
+  const tissue::ToolPose pose =
+      pose_at(path_, first + (duration > 0.0 ? std::fmod(gone, duration) : 0.0));
+  geometry_msgs::PoseStamped message;
+  message.header.frame_id = parameters_.frame_id;
+  message.header.stamp = ros::Time::now();
+  message.pose.position.x = pose.position.x();
+  message.pose.position.y = pose.position.y();
+  message.pose.position.z = pose.position.z();
+  message.pose.orientation.x = pose.orientation.x();
+  message.pose.orientation.y = pose.orientation.y();
+  message.pose.orientation.z = pose.orientation.z();
+  message.pose.orientation.w = pose.orientation.w();
+  publisher_.publish(message);
+}
+
+}  // namespace tissue_ros

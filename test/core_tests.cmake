@@ -1,0 +1,41 @@
+tissue_test(test_base LIBRARIES tissue_test_support tissue_simulate tissue_mesh_file SOURCES
+  base/layering_test.cpp base/mesh_checks_test.cpp base/mesh_file_test.cpp base/safe_path_test.cpp
+  base/topology_test.cpp)
+tissue_test(test_field LIBRARIES tissue_test_support tissue_triangle_surface tissue_dicom_writer SOURCES
+  field/density_test.cpp field/dicom_test.cpp field/edit_volume_test.cpp field/implicit_surface_test.cpp
+  field/read_volume_test.cpp field/triangle_surface_test.cpp field/volume_test.cpp)
+tissue_test(test_lattice LIBRARIES tissue_test_support SOURCES
+  lattice/stencils_test.cpp lattice/stuffing_test.cpp)
+tissue_test(test_refine LIBRARIES tissue_test_support SOURCES
+  refine/build_mesh_test.cpp refine/levels_test.cpp refine/methods_test.cpp
+  refine/project_boundary_test.cpp refine/refine_test.cpp
+  refine/splitting_test.cpp)
+tissue_test(test_simulate LIBRARIES tissue_test_support tissue_simulate SOURCES
+  simulate/constitutive_test.cpp simulate/contact_test.cpp
+  simulate/contact_torture_test.cpp simulate/node_surface_test.cpp simulate/dynamics_test.cpp simulate/elasticity_test.cpp simulate/force_feedback_test.cpp simulate/force_loop_test.cpp
+  simulate/multigrid_test.cpp simulate/near_incompressibility_test.cpp simulate/playback_test.cpp simulate/rigid_inclusions_test.cpp simulate/push_field_test.cpp simulate/scene_file_test.cpp
+  simulate/scene_test.cpp simulate/soft_holds_test.cpp simulate/solid_scene_test.cpp simulate/solutions_test.cpp
+  simulate/torture_test.cpp)
+# Effects' files once more, with every call in them counted; where calls can be told apart by the
+# linker's map.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  set(counted ${TISSUE_EFFECTS})
+  foreach(file averaged_volume contact_energy damping dynamics fold_guard gravity inertia
+      rigid_inclusions rigid_system squared_system)
+    list(APPEND counted src/tissue/simulate/${file}.cpp)
+  endforeach()
+  list(TRANSFORM counted REPLACE "^src" "${CMAKE_SOURCE_DIR}/src")
+  set_source_files_properties(${counted} PROPERTIES
+    COMPILE_OPTIONS "-finstrument-functions;-finstrument-functions-exclude-file-list=/usr/,.h")
+  tissue_test(test_effect_costs LIBRARIES tissue_test_support tissue_simulate tissue_yaml SOURCES
+    simulate/effect_costs_test.cpp ${counted})
+  set(map ${CMAKE_CURRENT_BINARY_DIR}/test_effect_costs.map)
+  target_compile_definitions(test_effect_costs PRIVATE TISSUE_LINK_MAP="${map}")
+  target_link_options(test_effect_costs PRIVATE -no-pie -Wl,-Map=${map})
+endif()
+tissue_test(test_study LIBRARIES tissue_test_support tissue_study SOURCES
+  study/strain_mesh_test.cpp study/study_test.cpp)
+tissue_test(test_tools LIBRARIES tissue_test_support SOURCES
+  tools/accuracy_study_test.cpp tools/mesh_volume_test.cpp tools/run_scene_test.cpp)
+target_compile_definitions(test_tools PRIVATE
+  ACCURACY_STUDY="$<TARGET_FILE:accuracy_study>" MESH_VOLUME="$<TARGET_FILE:mesh_volume>" RUN_SCENE="$<TARGET_FILE:run_scene>")
