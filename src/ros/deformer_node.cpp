@@ -151,11 +151,8 @@ void DeformerNode::publish_status() {
   status.step_seconds = progress->step_seconds;
   status.dropped_poses = tools_->dropped();
   status.rejected_meshes = rejected_meshes_;
-  const auto& tools = progress->tools;
-  const auto is_there = [](const auto& tool) { return bool(tool); };
-  if (!tools.empty() && std::none_of(tools.begin(), tools.end(), is_there)) {
-    status.flags.push_back("TOOL_LOST");
-  }
+  const tissue::ToolPoses& tools = progress->tools;
+  if (!tools.empty() && !any_is_there(tools)) status.flags.push_back("TOOL_LOST");
   if (progress->time_jumps > time_jumps_told_) status.flags.push_back("TIME_JUMP");
   time_jumps_told_ = progress->time_jumps;
   status_publisher_.publish(status);

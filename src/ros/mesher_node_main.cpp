@@ -1,14 +1,13 @@
 #include "ros/mesher_node.h"
-
-#include <ros/ros.h>
+#include "ros/node_main.h"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "mesher_node");
-  ros::NodeHandle handle;
-  ros::NodeHandle private_handle("~");
-  tissue_ros::MesherNode node(
-      handle, private_handle,
-      tissue_ros::read_parameters<tissue_ros::MesherNodeParameters>(private_handle));
-  ros::spin();
-  return 0;
+  using namespace tissue_ros;
+  using Parameters = MesherNodeParameters;
+  return run_node<Parameters>(
+      argc, argv, "mesher_node",
+      [](const ros::NodeHandle& handle, const ros::NodeHandle& private_handle,
+         const Parameters& parameters) {
+        return std::make_unique<MesherNode>(handle, private_handle, parameters);
+      });
 }

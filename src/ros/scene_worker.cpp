@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace tissue_ros {
 namespace {
@@ -15,10 +16,6 @@ constexpr double kSilence = 1.0;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-bool has_any(const tissue::ToolPoses& tools) {
-  return std::any_of(tools.begin(), tools.end(), [](const auto& tool) { return bool(tool); });
 }
 
 }  // namespace
@@ -111,11 +108,9 @@ SceneWorker::Inbox SceneWorker::next_inbox() {
   arrived_.wait_for(lock, std::chrono::duration<double>(patience), [this] {
     return inbox_.is_over || inbox_.has_lost || !inbox_.samples.empty();
   });
-  Inbox inbox = inbox_;
-  inbox_.samples.clear();
-  inbox_.has_lost = false;
-  std::fill(inbox_.lost.begin(), inbox_.lost.end(), std::uint8_t{0});
-  return inbox;
+  Inbox empty;
+  empty.lost.resize(tools_.size());
+  return std::exchange(inbox_, std::move(empty));
 }
 
 void SceneWorker::run() {
@@ -163,7 +158,7 @@ void SceneWorker::follow(const Inbox& inbox) {
   const double relaxing = 1.0 / options_.playback.cloud_rate;
   if (stamp == 0) {
     // The first step without a tool lets go; the others relax.
-    if (loses || (!has_any(tools) && scene_.recovering())) step(tools, relaxing);
+    if (loses || (!any_is_there(tools) && scene_.recovering())) step(tools, relaxing);
     return;
   }
   for (const tissue::ToolSample& sample : inbox.samples) {
@@ -171,8 +166,9 @@ void SceneWorker::follow(const Inbox& inbox) {
     tools[sample.tool] = sample.pose;
     tools[sample.tool]->closed = closed_[sample.tool];
   }
-  const double dt =
-      has_any(tools_) ? 1e-9 * static_cast<double>(std::max<std::int64_t>(stamp - stamp_, 0)) : 0.0;
+  const double dt = any_is_there(tools_)
+                        ? 1e-9 * static_cast<double>(std::max<std::int64_t>(stamp - stamp_, 0))
+                        : 0.0;
   stamp_ = std::max(stamp_, stamp);
   step(tools, dt);
 }

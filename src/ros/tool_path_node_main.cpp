@@ -1,22 +1,12 @@
-#include "ros/guarded.h"
 #include "ros/tool_path_node.h"
-
-#include <ros/ros.h>
-
-#include <memory>
+#include "ros/node_main.h"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "tool_path_node");
-  ros::NodeHandle handle;
-  const auto parameters =
-      tissue_ros::read_parameters<tissue_ros::ToolPathNodeParameters>(ros::NodeHandle("~"));
-  std::unique_ptr<tissue_ros::ToolPathNode> node;
-  const tissue_ros::Outcome outcome = tissue_ros::guarded(
-      [&] { node = std::make_unique<tissue_ros::ToolPathNode>(handle, parameters); });
-  if (!outcome.ok()) {
-    ROS_FATAL("tool_path_node: %s: %s", tissue::name(outcome.code), outcome.sentence.c_str());
-    return 1;
-  }
-  ros::spin();
-  return 0;
+  using namespace tissue_ros;
+  using Parameters = ToolPathNodeParameters;
+  return run_node<Parameters>(
+      argc, argv, "tool_path_node",
+      [](const ros::NodeHandle& handle, const ros::NodeHandle&, const Parameters& parameters) {
+        return std::make_unique<ToolPathNode>(handle, parameters);
+      });
 }

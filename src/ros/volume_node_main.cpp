@@ -1,22 +1,12 @@
-#include "ros/guarded.h"
 #include "ros/volume_node.h"
-
-#include <ros/ros.h>
-
-#include <memory>
+#include "ros/node_main.h"
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "volume_node");
-  ros::NodeHandle handle;
-  const auto parameters =
-      tissue_ros::read_parameters<tissue_ros::VolumeNodeParameters>(ros::NodeHandle("~"));
-  std::unique_ptr<tissue_ros::VolumeNode> node;
-  const tissue_ros::Outcome outcome = tissue_ros::guarded(
-      [&] { node = std::make_unique<tissue_ros::VolumeNode>(handle, parameters); });
-  if (!outcome.ok()) {
-    ROS_FATAL("volume_node: %s: %s", tissue::name(outcome.code), outcome.sentence.c_str());
-    return 1;
-  }
-  ros::spin();
-  return 0;
+  using namespace tissue_ros;
+  using Parameters = VolumeNodeParameters;
+  return run_node<Parameters>(
+      argc, argv, "volume_node",
+      [](const ros::NodeHandle& handle, const ros::NodeHandle&, const Parameters& parameters) {
+        return std::make_unique<VolumeNode>(handle, parameters);
+      });
 }

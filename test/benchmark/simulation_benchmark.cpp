@@ -93,6 +93,30 @@ void implicit_organ(benchmark::State& state) {
                 kFalling);
 }
 
+// A finger that presses on a ball with a tumour ten thousand times as stiff as the tissue around
+// it, or rigid. Arguments: whether it is rigid, order of the elements, whether there is inertia.
+void tumour(benchmark::State& state) {
+  const bool is_rigid = state.range(0) != 0, swings = state.range(2) != 0;
+  static const auto body = std::make_shared<tissue::Body>(
+      tissue_test::ball_body(tissue_test::refined_ball(0.014), 0.01, 255.0f, 60.0f));
+  const PeakMemory memory;
+  tissue::Scene scene(
+      tissue::parse_scene("model: corotational\nelement_order: " + std::to_string(state.range(1)) +
+                          "\nmaterial: {young: [[199, 3e3], [201, 3e7]], poisson: 0.45}\n"
+                          "anchors: [{plane: {axis: z, below: 12%}}]\n"
+                          "tools: [{name: finger, shape: {pad: {radius: 0.02}}, mode: grasp}]\n"
+                          "effects: [density_response" +
+                          std::string(is_rigid ? ", rigid_inclusions" : "") +
+                          (swings ? ", inertia, damping]\n" : "]\n")),
+      body);
+  int i = 0;
+  measure(state, scene, memory, [&] {
+    const tissue::Vec3 place(0.01 + 0.0005 * (i % 8), 0.002, 0.03 - 0.0005 * (i % 8));
+    ++i;
+    return scene.step(tissue::ToolPose{place, true}, 0.02);
+  });
+}
+
 // What each effect adds to a step of a beam of 20,736 tets.
 void effects(benchmark::State& state, const std::string& names) {
   dynamic_steps(state, beam_body(12, 2), "model: corotational\n", kClampedEnd, names);
@@ -108,6 +132,10 @@ BENCHMARK(implicit_step)
     ->Args({8, 2, 1, 2})
     ->Args({8, 2, 0, 0})
     ->Args({16, 2, 0, 2});
+BENCHMARK(tumour)
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(24)
+    ->ArgsProduct({{0, 1}, {1, 2}, {0, 1}});
 BENCHMARK(implicit_organ)->Unit(benchmark::kMillisecond)->Iterations(30);
 BENCHMARK_CAPTURE(effects, inertia, std::string("inertia"))
     ->Unit(benchmark::kMillisecond)

@@ -193,7 +193,11 @@ TEST(Playback, WhatMakesNoSenseIsRefused) {
   EXPECT_EQ(tissue_test::refusal([&] {
               Playback(scene, {0.0, 30.0}, {});
             }),
-            "E_PARAM: tool_timeout: 0 s is not between 0 and 1e6");
+            "E_PARAM: tool_timeout: 0 is not between 0 and 1e6");
+  EXPECT_EQ(tissue_test::refusal([&] {
+              Playback(scene, {0.1, 0.0}, {});
+            }),
+            "E_PARAM: cloud_rate: 0 is not between 0 and 1e6");
   Playback playback(scene, {}, {});
   EXPECT_EQ(tissue_test::refusal([&] {
               playback.add({2, 0, {}});

@@ -80,7 +80,6 @@ class Playback {
   void start_again(std::int64_t stamp);
   void pass_silence(std::int64_t until);
   void step(std::int64_t stamp, double dt);
-  bool has_a_tool() const;
 
   Scene& scene_;
   PlaybackOptions options_;

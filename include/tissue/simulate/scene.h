@@ -2,6 +2,7 @@
 
 #include "tissue/simulate/scene_description.h"
 
+#include <algorithm>
 #include <memory>
 
 namespace tissue {
@@ -16,6 +17,9 @@ struct ToolPose {
 
 /// One entry for each tool of the scene, in its order; without a pose a tool is lost.
 using ToolPoses = std::vector<std::optional<ToolPose>>;
+inline bool any_is_there(const ToolPoses& tools) {
+  return std::any_of(tools.begin(), tools.end(), [](const auto& tool) { return bool(tool); });
+}
 
 /// What an effect cost so far.
 struct EffectCost {

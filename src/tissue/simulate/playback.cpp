@@ -17,11 +17,13 @@ constexpr std::int64_t kPatience = 1000000000;
 constexpr std::int64_t kLongestRelaxation = 10 * kPatience;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
 
-std::int64_t nanoseconds(const char* name, double seconds) {
-  if (!(seconds > 0.0 && seconds <= 1e6)) {
-    throw InputError(ErrorCode::kParam,
-                     std::string(name) + ": " + to_text(seconds) + " s is not between 0 and 1e6");
-  }
+double within(const char* name, double value) {
+  if (value > 0.0 && value <= 1e6) return value;
+  throw InputError(ErrorCode::kParam,
+                   std::string(name) + ": " + to_text(value) + " is not between 0 and 1e6");
+}
+
+std::int64_t nanoseconds(double seconds) {
   return std::max<std::int64_t>(std::llround(seconds * kNanoseconds), 1);
 }
 
@@ -34,8 +36,8 @@ Playback::Playback(Scene& scene, const PlaybackOptions& options, OnCloud on_clou
       options_(options),
       on_cloud_(std::move(on_cloud)),
       on_step_(std::move(on_step)),
-      timeout_(nanoseconds("tool_timeout", options.tool_timeout)),
-      cloud_gap_(nanoseconds("cloud_rate", 1.0 / options.cloud_rate)),
+      timeout_(nanoseconds(within("tool_timeout", options.tool_timeout))),
+      cloud_gap_(nanoseconds(1.0 / within("cloud_rate", options.cloud_rate))),
       newest_of_all_(0, kNever),
       used_(scene.description().tools.size(), kNever),
       closed_(used_.size()),
@@ -103,11 +105,11 @@ void Playback::use(const Time& time) {
     if (waiting.front().closed) closed_[tool] = waiting.front().closed;
     waiting.pop_front();
   }
-  if (std::none_of(poses.begin(), poses.end(), [](const auto& pose) { return bool(pose); })) return;
+  if (!any_is_there(poses)) return;
   pass_silence(stamp);
   // What is nowhere has no way behind it.
   const std::int64_t gap = stamp - now_;
-  const double dt = seconds(has_a_tool() ? gap : std::min(gap, cloud_gap_));
+  const double dt = seconds(any_is_there(tools_) ? gap : std::min(gap, cloud_gap_));
   const ToolPoses before = tools_;
   for (std::size_t tool = 0; tool < tools_.size(); ++tool) {
     if (!poses[tool]) continue;
@@ -147,7 +149,7 @@ void Playback::pass_silence(std::int64_t until) {
     }
     step(lost_at, seconds(lost_at - now_));
   }
-  if (has_a_tool()) return;
+  if (any_is_there(tools_)) return;
   const std::int64_t end = std::min(until, now_ + kLongestRelaxation);
   while (scene_.recovering() && now_ + cloud_gap_ < end) {
     step(now_ + cloud_gap_, seconds(cloud_gap_));
@@ -166,10 +168,6 @@ void Playback::step(std::int64_t stamp, double dt) {
   if (stamp < next_cloud_) return;
   next_cloud_ = stamp + cloud_gap_;
   if (on_cloud_) on_cloud_(stamp);
-}
-
-bool Playback::has_a_tool() const {
-  return std::any_of(tools_.begin(), tools_.end(), [](const auto& tool) { return bool(tool); });
 }
 
 }  // namespace tissue
