@@ -134,8 +134,9 @@ BENCHMARK(implicit_step)
     ->Args({16, 2, 0, 2});
 BENCHMARK(tumour)
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(24)
-    ->ArgsProduct({{0, 1}, {1, 2}, {0, 1}});
+    ->Iterations(8)
+    ->ArgsProduct({{0, 1}, {1}, {0, 1}})
+    ->ArgsProduct({{0, 1}, {2}, {0}});
 BENCHMARK(implicit_organ)->Unit(benchmark::kMillisecond)->Iterations(30);
 BENCHMARK_CAPTURE(effects, inertia, std::string("inertia"))
     ->Unit(benchmark::kMillisecond)
