@@ -12,16 +12,21 @@ add_library(tissue_ros
   src/ros/deformer_node.cpp
   src/ros/device_messages.cpp
   src/ros/display_mesh.cpp
+  src/ros/kept_state.cpp
   src/ros/markers.cpp
+  src/ros/master_watch.cpp
   src/ros/mesher_node.cpp
+  src/ros/node_main.cpp
   src/ros/scene_worker.cpp
+  src/ros/settings.cpp
+  src/ros/simulation.cpp
   src/ros/tool_listener.cpp
   src/ros/tool_path_node.cpp
   src/ros/volume_node.cpp)
 target_include_directories(tissue_ros PUBLIC src SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(tissue_ros PUBLIC
   tissue_study tissue_triangle_surface tissue_mesh_file tissue_point_file
-  ${catkin_LIBRARIES})
+  PkgConfig::YAML_CPP ${catkin_LIBRARIES})
 add_dependencies(tissue_ros ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
 
 # Without ROS it reads no bags.
@@ -34,11 +39,15 @@ foreach(node volume_node mesher_node deformer_node tool_path_node)
   target_link_libraries(${node} tissue_ros)
 endforeach()
 
+# For one process: loaded by a nodelet manager.
+add_library(tissue_nodelets MODULE src/ros/nodelets.cpp)
+target_link_libraries(tissue_nodelets tissue_ros)
+
 install(TARGETS
     accuracy_study mesh_volume run_scene volume_node mesher_node deformer_node tool_path_node
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS
-    tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_refine tissue_ros
+    tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_nodelets tissue_refine tissue_ros
     tissue_point_file tissue_simulate tissue_study tissue_triangle_surface tissue_yaml
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})

@@ -2,12 +2,11 @@
 
 #include "ros/convert.h"
 #include "ros/markers.h"
+#include "tissue/base/machine_memory.h"
+#include "tissue/base/safe_path.h"
 #include "tissue/simulate/scene_file.h"
 
-#include <sensor_msgs/PointCloud2.h>
-
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace tissue_ros {
 namespace {
@@ -15,37 +14,40 @@ namespace {
 using tissue::ErrorCode;
 using tissue::InputError;
 
-void require_positive(const char* name, double value) {
-  if (value > 0.0 && value <= 10000.0) return;
-  throw InputError(ErrorCode::kParam, std::string("~") + name + ": " + tissue::to_text(value) +
-                                          " is not between 0 and 10000");
+bool same_mesh(const tissue::TetMesh& a, const tissue::TetMesh& b) {
+  return a.uuid == b.uuid && a.frame_id == b.frame_id && a.vertices == b.vertices &&
+         a.tets == b.tets && a.levels == b.levels && a.densities == b.densities &&
+         a.tet_densities == b.tet_densities;
+}
+
+void add(diagnostic_updater::DiagnosticStatusWrapper& status, const std::string& what,
+         const Meter::Reading& reading) {
+  status.addf(what + " per second", "%.1f", reading.rate);
+  status.addf(what + " median, p99, largest [ms]", "%.3f, %.3f, %.3f", 1e3 * reading.median,
+              1e3 * reading.p99, 1e3 * reading.largest);
 }
 
 }  // namespace
 
 DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
                            const DeformerNodeParameters& parameters)
-    : parameters_(parameters), diagnostics_(handle, private_handle) {
-  require_positive("tool_timeout", parameters.tool_timeout);
-  require_positive("cloud_rate", parameters.cloud_rate);
-  require_positive("marker_rate", parameters.marker_rate);
-  require_positive("status_rate", parameters.status_rate);
+    : parameters_(parameters),
+      handle_(handle),
+      kept_(parameters.folder, parameters.keep),
+      diagnostics_(handle, private_handle) {
   if (!parameters.scene.empty()) scene_ = tissue::read_scene(parameters.scene);
-
-  // Live, an old cloud is of no use; of a replay, none may be missing.
-  cloud_publisher_ = handle.advertise<sensor_msgs::PointCloud2>(
-      "deformed_cloud", parameters.deterministic ? 1000 : 2);
-  marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("deformed_markers", 1);
-  status_publisher_ = private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1);
-  using TetMesh = soft_tissue_sim::TetMesh;
-  mesh_subscriber_ = handle.subscribe<TetMesh>(
-      "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
-  ToolListenerOptions listening;
-  listening.deterministic = parameters.deterministic;
-  listening.tool_timeout = parameters.tool_timeout;
-  listening.force.max_force = parameters.max_force;
-  listening.force.max_rise = parameters.max_force_rise;
-  tools_.emplace(handle, scene_, listening, transforms_);
+  advertise(handle, private_handle);
+  if (const auto kept = kept_.scene()) {
+    const Outcome outcome = guarded([&] { scene_ = tissue::parse_scene(*kept); });
+    if (!outcome.ok()) ROS_WARN("deformer_node: scene not kept: %s", outcome.sentence.c_str());
+  }
+  tools_ = listener_for(scene_);
+  if (auto kept = kept_.mesh()) {
+    const Outcome outcome = guarded([&] {
+      begin(simulation_of(std::make_shared<const tissue::TetMesh>(std::move(*kept)), scene_));
+    });
+    if (!outcome.ok()) ROS_WARN("deformer_node: mesh not kept: %s", outcome.sentence.c_str());
+  }
 
   const auto every = [&](double rate, void (DeformerNode::*work)()) {
     timers_.push_back(handle.createWallTimer(
@@ -54,85 +56,132 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
           if (!outcome.ok()) ROS_ERROR_THROTTLE(1.0, "deformer_node: %s", outcome.sentence.c_str());
         }));
   };
-  if (!parameters.deterministic) every(parameters.cloud_rate, &DeformerNode::publish_cloud);
+  if (!parameters.deterministic) every(parameters.cloud_rate, &DeformerNode::publish_clouds);
   every(parameters.marker_rate, &DeformerNode::publish_markers);
   every(parameters.status_rate, &DeformerNode::publish_status);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("deformer", this, &DeformerNode::diagnose);
 }
 
-void DeformerNode::take_mesh(const soft_tissue_sim::TetMesh& message) {
-  const Outcome outcome = guarded([&] {
-    tissue::TetMesh mesh = from_message(message);
-    if (mesh.tets.empty()) throw InputError(ErrorCode::kMeshQuality, "mesh: it has no tets");
-    std::vector<std::uint8_t> levels = vertex_levels(mesh);
-    DisplayMesh display =
-        display_mesh(mesh, section_from(parameters_.section_axis, parameters_.section_at),
-                     static_cast<std::size_t>(std::max(parameters_.marker_max_triangles, 0)));
-    std::shared_ptr<SceneWorker> worker = worker_for(mesh, levels);
-    tools_->set_worker(worker, mesh.frame_id);
-    simulation_.emplace(
-        Simulation{std::move(mesh), std::move(levels), std::move(display), std::move(worker)});
-  });
-  if (!outcome.ok()) {
-    ++rejected_meshes_;
-    ROS_ERROR_THROTTLE(1.0, "deformer_node: mesh refused: %s: %s", tissue::name(outcome.code),
-                       outcome.sentence.c_str());
-    return;
-  }
-  time_jumps_told_ = 0;
-  markers_are_new_ = true;
-  ROS_INFO("deformer_node: took mesh %s of %zu tets", simulation_->mesh.uuid.c_str(),
-           simulation_->mesh.tets.size());
+void DeformerNode::advertise(ros::NodeHandle handle, ros::NodeHandle private_handle) {
+  // Live, an old cloud is of no use; of a replay, none may be missing.
+  const std::uint32_t queue = parameters_.deterministic ? 1000 : 2;
+  cloud_publisher_ = handle.advertise<sensor_msgs::PointCloud2>("deformed_cloud", queue);
+  marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("deformed_markers", 1);
+  probe_publisher_ = private_handle.advertise<soft_tissue_sim::Probes>("probes", queue);
+  status_publisher_ = private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1);
+  mesh_subscriber_ = handle.subscribe<TetMesh>(
+      "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
+  services_ = {private_handle.advertiseService("load_scene", &DeformerNode::load_scene, this),
+               private_handle.advertiseService("reset", &DeformerNode::reset, this),
+               private_handle.advertiseService("pause", &DeformerNode::pause, this)};
 }
 
-std::shared_ptr<SceneWorker> DeformerNode::worker_for(const tissue::TetMesh& mesh,
-                                                      const std::vector<std::uint8_t>& levels) {
-  SceneWorkerOptions options;
-  options.deterministic = parameters_.deterministic;
-  options.playback.tool_timeout = parameters_.tool_timeout;
-  options.playback.cloud_rate = parameters_.cloud_rate;
-  options.playback.reset_on_time_jump = parameters_.reset_on_time_jump;
-  auto body = std::make_shared<const tissue::Body>(tissue::body_of(mesh));
-  const auto publish = [this, body, levels, frame = mesh.frame_id](std::int64_t stamp,
-                                                                   const tissue::State& state) {
-    auto cloud = boost::make_shared<sensor_msgs::PointCloud2>(cloud_message(*body, state, levels));
-    cloud->header.frame_id = frame;
-    cloud->header.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
-    cloud_publisher_.publish(cloud);
-  };
-  return std::make_shared<SceneWorker>(
-      tissue::Scene(scene_, body), options, publish, [](const std::string& sentence) {
+std::unique_ptr<ToolListener> DeformerNode::listener_for(const tissue::SceneDescription& scene) {
+  ToolListenerOptions listening;
+  listening.deterministic = parameters_.deterministic;
+  listening.tool_timeout = parameters_.tool_timeout;
+  listening.force.max_force = parameters_.max_force;
+  listening.force.max_rise = parameters_.max_force_rise;
+  return std::make_unique<ToolListener>(handle_, scene, listening, transforms_);
+}
+
+void DeformerNode::take_mesh(const TetMesh& message) {
+  const Outcome outcome = guarded([&] {
+    auto mesh = std::make_shared<const tissue::TetMesh>(from_message(message));
+    // As a mesher says it again that was started anew.
+    if (simulation_ && same_mesh(*mesh, *simulation_->mesh())) return;
+    begin(simulation_of(mesh, scene_));
+    kept_.keep(std::move(mesh));
+  });
+  if (outcome.ok()) return;
+  ++rejected_meshes_;
+  ROS_ERROR_THROTTLE(1.0, "deformer_node: mesh refused: %s: %s", tissue::name(outcome.code),
+                     outcome.sentence.c_str());
+}
+
+std::unique_ptr<Simulation> DeformerNode::simulation_of(std::shared_ptr<const tissue::TetMesh> mesh,
+                                                        const tissue::SceneDescription& scene) {
+  return std::make_unique<Simulation>(
+      std::move(mesh), scene, parameters_,
+      [this](const Simulation::Clouds& clouds) { publish(clouds); },
+      [](const std::string& sentence) {
         ROS_ERROR_THROTTLE(1.0, "deformer_node: step refused: %s", sentence.c_str());
       });
 }
 
-void DeformerNode::publish_cloud() {
-  if (!simulation_ || cloud_publisher_.getNumSubscribers() == 0) return;
-  SceneWorker& worker = *simulation_->worker;
-  const std::int64_t stamp = worker.progress()->stamp;
-  auto cloud = boost::make_shared<sensor_msgs::PointCloud2>(
-      cloud_message(worker.body(), *worker.state(), simulation_->vertex_levels));
-  cloud->header.frame_id = simulation_->mesh.frame_id;
-  cloud->header.stamp = ros::Time::now();
-  if (stamp != 0) cloud->header.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
-  cloud_publisher_.publish(cloud);
+void DeformerNode::begin(std::unique_ptr<Simulation> simulation) {
+  tools_->set_worker(simulation->worker(), simulation->mesh()->frame_id);
+  simulation_ = std::move(simulation);
+  time_jumps_told_ = 0;
+  markers_are_new_ = true;
+  ROS_INFO("deformer_node: mesh %s of %zu tets moves as scene '%s' says",
+           simulation_->mesh()->uuid.c_str(), simulation_->mesh()->tets.size(),
+           scene_.name.c_str());
+}
+
+template <class Work>
+soft_tissue_sim::Result DeformerNode::result_of(const char* what, const Work& work) {
+  const Outcome outcome = guarded(work);
+  if (!outcome.ok()) {
+    ROS_ERROR_THROTTLE(1.0, "deformer_node: %s refused: %s: %s", what, tissue::name(outcome.code),
+                       outcome.sentence.c_str());
+  }
+  return to_message(outcome.code, outcome.sentence);
+}
+
+bool DeformerNode::load_scene(LoadScene::Request& request, LoadScene::Response& response) {
+  response.result = result_of("load_scene", [&] {
+    if (request.yaml.empty() == request.path.empty()) {
+      throw InputError(ErrorCode::kParam, "load_scene: one of yaml and path is to be given");
+    }
+    const std::string yaml =
+        request.path.empty()
+            ? request.yaml
+            : tissue::scene_text(tissue::confined_path(state_folder(parameters_.folder),
+                                                       request.path, /*must_exist=*/true));
+    // All that can fail comes before anything changes.
+    tissue::SceneDescription scene = tissue::parse_scene(yaml);
+    std::unique_ptr<Simulation> simulation;
+    if (simulation_) simulation = simulation_of(simulation_->mesh(), scene);
+    tools_ = listener_for(scene);
+    scene_ = std::move(scene);
+    if (simulation) begin(std::move(simulation));
+    kept_.keep_scene(yaml);
+  });
+  return true;
+}
+
+bool DeformerNode::reset(Reset::Request&, Reset::Response& response) {
+  response.result = result_of("reset", [&] {
+    if (simulation_) simulation_->worker()->reset();
+  });
+  return true;
+}
+
+bool DeformerNode::pause(Pause::Request& request, Pause::Response& response) {
+  response.result = result_of("pause", [&] {
+    if (!simulation_) throw InputError(ErrorCode::kNoVolume, "pause: there is no mesh yet");
+    simulation_->worker()->pause(request.paused != 0);
+  });
+  return true;
+}
+
+void DeformerNode::publish(const Simulation::Clouds& clouds) {
+  cloud_publisher_.publish(clouds.cloud);
+  probe_publisher_.publish(clouds.probes);
+  clouds_published_.add((ros::Time::now() - clouds.cloud->header.stamp).toSec());
+}
+
+void DeformerNode::publish_clouds() {
+  if (!simulation_) return;
+  if (cloud_publisher_.getNumSubscribers() + probe_publisher_.getNumSubscribers() == 0) return;
+  publish(simulation_->clouds());
 }
 
 void DeformerNode::publish_markers() {
   if (!simulation_ || marker_publisher_.getNumSubscribers() == 0) return;
-  const std::shared_ptr<const tissue::State> state = simulation_->worker->state();
-  const tissue::ToolPoses tools = simulation_->worker->progress()->tools;
-  const std::string& frame = simulation_->mesh.frame_id;
-  auto markers = level_markers(
-      simulation_->display, [&](std::uint32_t v) -> tissue::Vec3 { return state->positions[v]; },
-      frame);
-  for (std::size_t i = 0; i < tools.size(); ++i) {
-    const tissue::ToolDescription& tool = scene_.tools[i];
-    markers.markers.push_back(ball_marker(
-        tool.name, tools[i] ? tools[i]->position : tissue::Vec3::Zero(), tool.radius, 1.0f, frame));
-    if (!tools[i]) markers.markers.back().action = visualization_msgs::Marker::DELETE;
-  }
+  const auto markers = simulation_->markers();
   marker_publisher_.publish(markers_are_new_ ? replacing_all(markers) : markers);
   markers_are_new_ = false;
 }
@@ -140,34 +189,42 @@ void DeformerNode::publish_markers() {
 void DeformerNode::publish_status() {
   diagnostics_.update();
   if (!simulation_ || status_publisher_.getNumSubscribers() == 0) return;
-  SceneWorker& worker = *simulation_->worker;
-  const auto progress = worker.progress();
-  soft_tissue_sim::SimulationStatus status =
-      to_message(scene_, progress->costs,
-                 tissue::deformation_quality(worker.body(), *worker.state()), progress->report);
-  status.header.stamp.fromNSec(static_cast<std::uint64_t>(progress->stamp));
-  status.header.frame_id = simulation_->mesh.frame_id;
-  status.mesh_uuid = simulation_->mesh.uuid;
-  status.step_seconds = progress->step_seconds;
+  soft_tissue_sim::SimulationStatus status = simulation_->status();
   status.dropped_poses = tools_->dropped();
   status.rejected_meshes = rejected_meshes_;
-  const tissue::ToolPoses& tools = progress->tools;
-  if (!tools.empty() && !any_is_there(tools)) status.flags.push_back("TOOL_LOST");
-  if (progress->time_jumps > time_jumps_told_) status.flags.push_back("TIME_JUMP");
-  time_jumps_told_ = progress->time_jumps;
+  const std::size_t time_jumps = simulation_->worker()->progress()->time_jumps;
+  if (time_jumps > time_jumps_told_) status.flags.push_back("TIME_JUMP");
+  time_jumps_told_ = time_jumps;
   status_publisher_.publish(status);
 }
 
 void DeformerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   if (simulation_) {
-    status.summary(DiagnosticStatus::OK, "simulating");
-    status.add("mesh", simulation_->mesh.uuid);
+    SceneWorker& worker = *simulation_->worker();
+    const auto progress = worker.progress();
+    if (progress->report.not_converged) {
+      status.summary(DiagnosticStatus::WARN, "NOT_CONVERGED: the last valid state is shown");
+    } else {
+      status.summary(DiagnosticStatus::OK, worker.is_paused() ? "paused" : "simulating");
+    }
+    status.add("mesh", simulation_->mesh()->uuid);
+    status.add("scene", scene_.name);
+    add(status, "steps", worker.step_meter().read());
+    status.add("steps that did not converge", progress->not_converged);
+    status.add("iterations", progress->report.iterations);
+    status.add("residual", progress->report.residual);
   } else {
     status.summary(DiagnosticStatus::WARN, "no mesh");
   }
+  for (std::size_t i = 0; i < scene_.tools.size(); ++i) {
+    add(status, "poses of " + scene_.tools[i].name + ", until the force is sent,",
+        tools_->meter(i).read());
+  }
+  add(status, "clouds, since the pose,", clouds_published_.read());
   status.add("dropped poses", tools_->dropped());
   status.add("rejected meshes", rejected_meshes_);
+  status.add("resident memory [MB]", tissue::resident_memory() / 1000000);
 }
 
 }  // namespace tissue_ros

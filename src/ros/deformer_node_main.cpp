@@ -3,11 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_ros;
-  using Parameters = DeformerNodeParameters;
-  return run_node<Parameters>(
-      argc, argv, "deformer_node",
-      [](const ros::NodeHandle& handle, const ros::NodeHandle& private_handle,
-         const Parameters& parameters) {
-        return std::make_unique<DeformerNode>(handle, private_handle, parameters);
-      });
+  return run_node<DeformerNode, DeformerNodeParameters>(argc, argv, "deformer_node");
 }

@@ -4,13 +4,13 @@
 #include "ros/convert.h"
 #include "ros/markers.h"
 #include "ros/point_file.h"
+#include "tissue/base/machine_memory.h"
 #include "tissue/base/mesh_file.h"
 #include "tissue/base/safe_path.h"
 #include "tissue/field/triangle_surface.h"
 
 #include <soft_tissue_sim/TetMesh.h>
 
-#include <cstdlib>
 #include <filesystem>
 
 namespace tissue_ros {
@@ -23,7 +23,9 @@ using tissue::InputError;
 
 MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
                        const MesherNodeParameters& parameters)
-    : parameters_(parameters), diagnostics_(handle, private_handle) {
+    : parameters_(parameters),
+      kept_(parameters.folder, parameters.keep),
+      diagnostics_(handle, private_handle) {
   mesh_publisher_ = handle.advertise<soft_tissue_sim::TetMesh>("mesh", 1, true);
   marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("mesh_markers", 1, true);
   density_publisher_ =
@@ -45,6 +47,12 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
       build_handle, "build", [this](const Goal& goal) { take_goal(goal); },
       [this](const Goal& goal) { cancel(goal); }, false);
   action_->start();
+
+  if (auto kept = kept_.mesh()) {
+    const auto mesh = std::make_shared<const tissue::TetMesh>(std::move(*kept));
+    const Outcome outcome = guarded([&] { publish(mesh); });
+    if (!outcome.ok()) report("kept mesh", outcome);
+  }
 
   diagnostics_.setHardwareID("none");
   diagnostics_.add("mesher", this, &MesherNode::diagnose);
@@ -201,7 +209,7 @@ tissue::TetMesh MesherNode::mesh_for(const Asked& request, const tissue::Run& ru
   if (request.use_mask && !request.surface_file.empty()) {
     throw InputError(ErrorCode::kParam, "surface_file: use_mask is set too; one is the organ");
   }
-  const std::string below = folder();
+  const std::string below = state_folder(parameters_.folder);
   const auto file = [&](const std::string& name) {
     return tissue::confined_path(below, name, true);
   };
@@ -221,7 +229,7 @@ bool MesherNode::save(FileRequest& request, FileResponse& response) {
       const std::lock_guard<std::mutex> lock(data_mutex_);
       mesh = mesh_;
     }
-    const std::string path = tissue::confined_path(folder(), request.path, false);
+    const std::string path = tissue::confined_path(state_folder(parameters_.folder), request.path, false);
     if (mesh == nullptr) {
       throw InputError(ErrorCode::kNoVolume, "save_mesh: there is no mesh yet");
     }
@@ -239,7 +247,7 @@ bool MesherNode::save(FileRequest& request, FileResponse& response) {
 
 bool MesherNode::load(FileRequest& request, FileResponse& response) {
   const Outcome outcome = guarded([&] {
-    const std::string path = tissue::confined_path(folder(), request.path, true);
+    const std::string path = tissue::confined_path(state_folder(parameters_.folder), request.path, true);
     const auto mesh =
         std::make_shared<const tissue::TetMesh>(tissue::read_mesh(path, /*only_own=*/true));
     publish(mesh);
@@ -248,22 +256,6 @@ bool MesherNode::load(FileRequest& request, FileResponse& response) {
   if (!outcome.ok()) report("load_mesh", outcome);
   response.result = to_message(outcome.code, outcome.sentence);
   return true;
-}
-
-std::string MesherNode::folder() const {
-  namespace fs = std::filesystem;
-  const char* home = std::getenv("HOME");
-  const char* ros_home = std::getenv("ROS_HOME");
-  const fs::path root =
-      ros_home != nullptr ? fs::path(ros_home) : fs::path(home != nullptr ? home : "/tmp") / ".ros";
-  const fs::path folder =
-      parameters_.folder.empty() ? root / "soft_tissue_sim" : fs::path(parameters_.folder);
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (!fs::is_directory(folder, failed)) {
-    throw InputError(ErrorCode::kPath, "~folder: '" + folder.string() + "' is no folder");
-  }
-  return folder.string();
 }
 
 void MesherNode::publish(const MeshPtr& built) {
@@ -279,12 +271,13 @@ void MesherNode::publish(const MeshPtr& built) {
   mesh_publisher_.publish(message);
   const DisplayMesh display =
       display_mesh(mesh, section_from(parameters_.section_axis, parameters_.section_at),
-                   static_cast<std::size_t>(std::max(parameters_.marker_max_triangles, 0)));
+                   static_cast<std::size_t>(parameters_.marker_max_triangles));
   const auto place = [&](std::uint32_t v) -> tissue::Vec3 {
     return mesh.vertices[v].cast<double>();
   };
   marker_publisher_.publish(replacing_all(level_markers(display, place, mesh.frame_id)));
   density_publisher_.publish(replacing_all(density_markers(display, mesh)));
+  kept_.keep(built);
   const std::lock_guard<std::mutex> lock(data_mutex_);
   mesh_ = built;
 }
@@ -299,6 +292,7 @@ void MesherNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.summary(diagnostic_msgs::DiagnosticStatus::OK, "serving");
   status.add("meshes built", built_.load());
   status.add("requests and volumes rejected", rejected_.load());
+  status.add("resident memory [MB]", tissue::resident_memory() / 1000000);
 }
 
 }  // namespace tissue_ros

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ros/guarded.h"
+#include "ros/kept_state.h"
 #include "ros/parameters.h"
 
 #include <actionlib/server/action_server.h>
@@ -32,6 +33,9 @@ class MesherNode {
              const MesherNodeParameters& parameters);
   ~MesherNode();
 
+  /// The node ends well: what it kept for one that takes its place is of no use.
+  void forget() { kept_.forget(); }
+
  private:
   using Request = soft_tissue_sim::BuildMesh::Request;
   using Response = soft_tissue_sim::BuildMesh::Response;
@@ -57,11 +61,11 @@ class MesherNode {
   template <class Asked>
   tissue::TetMesh mesh_for(const Asked& request, const tissue::Run& run) const;
   void publish(const MeshPtr& mesh);
-  std::string folder() const;
   void report(const char* what, const Outcome& outcome);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   MesherNodeParameters parameters_;
+  KeptState kept_;
   mutable std::mutex data_mutex_;
   VolumePtr volume_, mask_;
   MeshPtr mesh_;

@@ -1,43 +1,47 @@
 #pragma once
 
-#include "ros/guarded.h"
 #include "ros/parameters.h"
 
-#include <ros/callback_queue.h>
-#include <ros/ros.h>
+#include <ros/node_handle.h>
 
-#include <csignal>
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace tissue_ros {
 
-inline volatile std::sig_atomic_t is_over = 0;
+/// Ends a node; `well` unless another is to take its place, because the master was lost.
+using EndNode = std::function<void(bool well)>;
 
-/// The main function of a node that `make(handle, private_handle, parameters)` makes a unique_ptr
-/// of: 0 when it is asked to end, 1 with a sentence if it cannot begin. On SIGINT and SIGTERM the
-/// work at hand is finished, and what the node says when it is destroyed gets out.
-template <class Parameters, class Make>
-int run_node(int argc, char** argv, const char* name, const Make& make) {
-  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
-  ros::NodeHandle handle;
-  const ros::NodeHandle private_handle("~");
-  decltype(make(handle, private_handle, Parameters())) node;
-  const Outcome outcome = guarded(
-      [&] { node = make(handle, private_handle, read_parameters<Parameters>(private_handle)); });
-  if (!outcome.ok()) {
-    ROS_FATAL("%s: %s: %s", name, tissue::name(outcome.code), outcome.sentence.c_str());
-    return 1;
-  }
-  const auto end = [](int) { is_over = 1; };
-  std::signal(SIGINT, end);
-  std::signal(SIGTERM, end);
-  while (ros::ok() && is_over == 0) {
-    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
-  }
-  node.reset();
-  ros::WallDuration(0.1).sleep();
-  ros::shutdown();
-  return 0;
+/// Nodes that keep what they have for one that takes their place have a forget().
+template <class Node>
+auto forget(Node& node, int) -> decltype(node.forget()) {
+  node.forget();
+}
+template <class Node>
+void forget(Node&, long) {}
+
+/// The process of a node: `make`, told what command line is left when ROS has taken its part (files
+/// of settings), begins a node. Returns the exit code: 0 when it was asked to end by SIGINT or
+/// SIGTERM, after the work at hand is finished and what the node says at its end has got out; 1
+/// with a sentence if there is no master, if the node cannot begin, when the master is lost, and
+/// when somebody else shuts it down, as a second node of its name does.
+int run_process(int argc, char** argv, const char* name,
+                const std::function<EndNode(const std::vector<std::string>& files)>& make);
+
+/// The main function of a node of this class, whose parameters are `Parameters`.
+template <class Node, class Parameters>
+int run_node(int argc, char** argv, const char* name) {
+  return run_process(argc, argv, name, [name](const std::vector<std::string>& files) {
+    const ros::NodeHandle handle, private_handle("~");
+    auto node = std::make_shared<Node>(handle, private_handle,
+                                       Settings(name, files).read<Parameters>(private_handle));
+    return [node](bool well) mutable {
+      if (well) forget(*node, 0);
+      node.reset();
+    };
+  });
 }
 
 }  // namespace tissue_ros

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ros/settings.h"
 #include "tissue/refine/build_mesh.h"
 #include "tissue/simulate/force_loop.h"
 
@@ -8,8 +9,13 @@
 
 namespace tissue_ros {
 
-// The nodes' parameters and their only defaults; config/parameters.yaml repeats them with comments,
-// and a test compares the two. `visit` names each of them to a reader or to that test.
+// The nodes' parameters, their only defaults and what numbers may be; config/parameters.yaml repeats
+// the defaults with comments, and a test compares the two. `visit` names each of them to a reader or
+// to that test.
+
+constexpr Range kAny{-1e300, 1e300};
+/// [Hz] or [s]
+constexpr Range kRate{1e-4, 1e4};
 
 struct VolumeNodeParameters {
   std::string file;
@@ -32,9 +38,9 @@ struct VolumeNodeParameters {
     visitor("tumour", tumour);
     visitor("mask_file", mask_file);
     visitor("mask_by_threshold", mask_by_threshold);
-    visitor("mask_above", mask_above);
-    visitor("mask_opening", mask_opening);
-    visitor("mask_smoothing", mask_smoothing);
+    visitor("mask_above", mask_above, kAny);
+    visitor("mask_opening", mask_opening, Range{0, 100});
+    visitor("mask_smoothing", mask_smoothing, Range{0, 100});
   }
 };
 
@@ -51,7 +57,7 @@ struct MesherNodeParameters {
   int smooth_levels = tissue::LevelOptions{}.smooth_levels;
   bool keep_interfaces = tissue::MeshOptions{}.keep_interfaces;
   bool project_boundary = tissue::MeshOptions{}.project_boundary;
-  std::string folder;
+  std::string folder, keep;
   int max_tetrahedra = static_cast<int>(tissue::MeshOptions{}.max_tetrahedra);
   int threads = tissue::MeshOptions{}.threads;
   int marker_max_triangles = 20000;
@@ -62,27 +68,28 @@ struct MesherNodeParameters {
   void visit(Visitor&& visitor) {
     visitor("build_on_volume", build_on_volume);
     visitor("use_mask", use_mask);
-    visitor("iso_value", iso_value);
-    visitor("spacing", spacing);
+    visitor("iso_value", iso_value, kAny);
+    visitor("spacing", spacing, Range{0, 10});
     visitor("method", method);
-    visitor("target_tetrahedra", target_tetrahedra);
-    visitor("initial_tetrahedra", initial_tetrahedra);
-    visitor("level_sections", level_sections);
-    visitor("base_level", base_level);
-    visitor("smooth_levels", smooth_levels);
+    visitor("target_tetrahedra", target_tetrahedra, Range{0, 1e9});
+    visitor("initial_tetrahedra", initial_tetrahedra, Range{0, 1e9});
+    visitor("level_sections", level_sections, Range{1, 255});
+    visitor("base_level", base_level, Range{0, 20});
+    visitor("smooth_levels", smooth_levels, Range{0, 1000});
     visitor("keep_interfaces", keep_interfaces);
     visitor("project_boundary", project_boundary);
     visitor("folder", folder);
-    visitor("max_tetrahedra", max_tetrahedra);
-    visitor("threads", threads);
-    visitor("marker_max_triangles", marker_max_triangles);
+    visitor("keep", keep);
+    visitor("max_tetrahedra", max_tetrahedra, Range{1, 1e9});
+    visitor("threads", threads, Range{0, 1024});
+    visitor("marker_max_triangles", marker_max_triangles, Range{0, 1e8});
     visitor("section_axis", section_axis);
-    visitor("section_at", section_at);
+    visitor("section_at", section_at, Range{0, 1});
   }
 };
 
 struct DeformerNodeParameters {
-  std::string scene;
+  std::string scene, folder, keep;
   bool deterministic = false;
   bool reset_on_time_jump = true;
   double tool_timeout = 0.1;
@@ -98,17 +105,19 @@ struct DeformerNodeParameters {
   template <class Visitor>
   void visit(Visitor&& visitor) {
     visitor("scene", scene);
+    visitor("folder", folder);
+    visitor("keep", keep);
     visitor("deterministic", deterministic);
     visitor("reset_on_time_jump", reset_on_time_jump);
-    visitor("tool_timeout", tool_timeout);
-    visitor("max_force", max_force);
-    visitor("max_force_rise", max_force_rise);
-    visitor("cloud_rate", cloud_rate);
-    visitor("marker_rate", marker_rate);
-    visitor("status_rate", status_rate);
-    visitor("marker_max_triangles", marker_max_triangles);
+    visitor("tool_timeout", tool_timeout, kRate);
+    visitor("max_force", max_force, Range{1e-6, 1000});
+    visitor("max_force_rise", max_force_rise, Range{1e-3, 1e6});
+    visitor("cloud_rate", cloud_rate, kRate);
+    visitor("marker_rate", marker_rate, kRate);
+    visitor("status_rate", status_rate, kRate);
+    visitor("marker_max_triangles", marker_max_triangles, Range{0, 1e8});
     visitor("section_axis", section_axis);
-    visitor("section_at", section_at);
+    visitor("section_at", section_at, Range{0, 1});
   }
 };
 
@@ -135,21 +144,10 @@ struct ToolPathNodeParameters {
     visitor("to", to);
     visitor("centre", centre);
     visitor("axis", axis);
-    visitor("radius", radius);
-    visitor("period", period);
-    visitor("rate", rate);
+    visitor("radius", radius, Range{1e-6, 10});
+    visitor("period", period, Range{1e-3, 1e6});
+    visitor("rate", rate, kRate);
   }
 };
-
-/// Reads every parameter from a node handle.
-template <class Parameters, class NodeHandle>
-Parameters read_parameters(const NodeHandle& private_handle) {
-  Parameters parameters;
-  parameters.visit([&](const char* name, auto& value) {
-    const auto fallback = value;
-    private_handle.param(name, value, fallback);
-  });
-  return parameters;
-}
 
 }  // namespace tissue_ros

@@ -27,23 +27,13 @@ SceneWorker::SceneWorker(tissue::Scene scene, const SceneWorkerOptions& options,
       on_error_(std::move(on_error)),
       scene_(std::move(scene)),
       tools_(description().tools.size()),
-      closed_(tools_.size()),
-      state_(std::make_shared<tissue::State>(scene_.state())) {
+      closed_(tools_.size()) {
   inbox_.lost.resize(tools_.size());
-  if (options.deterministic) {
-    playback_.emplace(
-        scene_, options.playback,
-        [this](std::int64_t stamp) {
-          stamp_ = stamp;
-          if (on_cloud_) on_cloud_(stamp, scene_.state());
-        },
-        [this](const tissue::StepReport& report, double seconds) {
-          tell(report, seconds, playback_->tools());
-        });
-  }
+  if (options.deterministic) start_playback();
   // Tissue takes its weight before any tool comes.
   step(tools_, 0.0);
-  state_ = std::make_shared<tissue::State>(scene_.state());
+  view_ = view_of_scene();
+  steps_of_view_ = steps_;
   thread_ = std::thread([this] { run(); });
 }
 
@@ -84,17 +74,42 @@ void SceneWorker::lose(std::size_t tool) {
   arrived_.notify_one();
 }
 
-std::shared_ptr<const tissue::State> SceneWorker::state() {
+void SceneWorker::reset() {
+  std::unique_lock<std::mutex> lock(inbox_mutex_);
+  inbox_.has_reset = true;
+  const std::size_t before = resets_;
+  arrived_.notify_one();
+  was_reset_.wait(lock, [&] { return resets_ != before; });
+}
+
+void SceneWorker::pause(bool paused) {
+  {
+    const std::lock_guard<std::mutex> lock(inbox_mutex_);
+    is_paused_ = paused;
+  }
+  arrived_.notify_one();
+}
+
+bool SceneWorker::is_paused() const {
+  const std::lock_guard<std::mutex> lock(inbox_mutex_);
+  return is_paused_;
+}
+
+std::shared_ptr<const SceneWorker::View> SceneWorker::view() {
   const std::unique_lock<std::mutex> scene_lock(scene_mutex_, std::try_to_lock);
   const std::lock_guard<std::mutex> lock(view_mutex_);
   if (!scene_lock.owns_lock()) {
     // The step that runs leaves it.
-    state_is_wanted_ = true;
-  } else if (steps_of_state_ != steps_) {
-    state_ = std::make_shared<tissue::State>(scene_.state());
-    steps_of_state_ = steps_;
+    view_is_wanted_ = true;
+  } else if (steps_of_view_ != steps_) {
+    view_ = view_of_scene();
+    steps_of_view_ = steps_;
   }
-  return state_;
+  return view_;
+}
+
+std::shared_ptr<const SceneWorker::View> SceneWorker::view_of_scene() const {
+  return std::make_shared<View>(View{scene_.state(), scene_.probes()});
 }
 
 std::shared_ptr<const SceneWorker::Progress> SceneWorker::progress() const {
@@ -105,9 +120,13 @@ std::shared_ptr<const SceneWorker::Progress> SceneWorker::progress() const {
 SceneWorker::Inbox SceneWorker::next_inbox() {
   std::unique_lock<std::mutex> lock(inbox_mutex_);
   const double patience = options_.deterministic ? kSilence : 1.0 / options_.playback.cloud_rate;
-  arrived_.wait_for(lock, std::chrono::duration<double>(patience), [this] {
-    return inbox_.is_over || inbox_.has_lost || !inbox_.samples.empty();
-  });
+  const auto is_due = [this] {
+    return inbox_.is_over || inbox_.has_reset ||
+           (!is_paused_ && (inbox_.has_lost || !inbox_.samples.empty()));
+  };
+  do {
+    arrived_.wait_for(lock, std::chrono::duration<double>(patience), is_due);
+  } while (is_paused_ && !is_due());
   Inbox empty;
   empty.lost.resize(tools_.size());
   return std::exchange(inbox_, std::move(empty));
@@ -119,14 +138,39 @@ void SceneWorker::run() {
     if (inbox.is_over) return;
     const std::lock_guard<std::mutex> lock(scene_mutex_);
     const Outcome outcome = guarded([&] {
-      if (options_.deterministic) {
+      if (inbox.has_reset) {
+        start_again();
+      } else if (options_.deterministic) {
         replay(inbox);
       } else {
         follow(inbox);
       }
     });
     if (!outcome.ok() && on_error_) on_error_(outcome.sentence);
+    if (!inbox.has_reset) continue;
+    const std::lock_guard<std::mutex> inbox_lock(inbox_mutex_);
+    ++resets_;
+    was_reset_.notify_all();
   }
+}
+
+void SceneWorker::start_playback() {
+  playback_.emplace(
+      scene_, options_.playback,
+      [this](std::int64_t stamp) {
+        stamp_ = stamp;
+        if (on_cloud_) on_cloud_(stamp, scene_);
+      },
+      [this](const tissue::StepReport& report, double seconds) {
+        tell(report, seconds, playback_->tools());
+      });
+}
+
+void SceneWorker::start_again() {
+  scene_.reset();
+  tools_.assign(tools_.size(), std::nullopt);
+  if (options_.deterministic) start_playback();
+  step(tools_, 0.0);
 }
 
 void SceneWorker::replay(const Inbox& inbox) {
@@ -180,10 +224,7 @@ void SceneWorker::start_again_if_behind(std::int64_t stamp) {
   if (behind <= (tools_.size() > 1 ? options_.playback.tool_timeout : 0.0)) return;
   ++time_jumps_;
   stamp_ = stamp;
-  if (!options_.playback.reset_on_time_jump) return;
-  scene_.reset();
-  tools_.assign(tools_.size(), std::nullopt);
-  step(tools_, 0.0);
+  if (options_.playback.reset_on_time_jump) start_again();
 }
 
 void SceneWorker::step(const tissue::ToolPoses& tools, double dt) {
@@ -202,6 +243,8 @@ void SceneWorker::tell(const tissue::StepReport& report, double seconds,
   progress->tools = tools;
   progress->costs = scene_.effect_costs();
   progress->steps = ++steps_;
+  progress->not_converged = not_converged_ += report.not_converged ? 1 : 0;
+  step_meter_.add(seconds);
   progress->time_jumps = playback_ ? playback_->time_jumps() : time_jumps_;
   const auto felt = scene_.tool_feedback();
   progress->tissue.resize(tools.size());
@@ -212,10 +255,10 @@ void SceneWorker::tell(const tissue::StepReport& report, double seconds,
   }
   const std::lock_guard<std::mutex> lock(view_mutex_);
   progress_ = std::move(progress);
-  if (!state_is_wanted_) return;
-  state_ = std::make_shared<tissue::State>(scene_.state());
-  steps_of_state_ = steps_;
-  state_is_wanted_ = false;
+  if (!view_is_wanted_) return;
+  view_ = view_of_scene();
+  steps_of_view_ = steps_;
+  view_is_wanted_ = false;
 }
 
 }  // namespace tissue_ros

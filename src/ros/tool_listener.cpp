@@ -15,6 +15,7 @@ ToolListener::ToolListener(const ros::NodeHandle& handle, const tissue::SceneDes
       options_(options),
       transforms_(transforms),
       feels_(scene.has("force_feedback") && !options.deterministic),
+      meters_(scene.tools.size()),
       heard_(scene.tools.size()),
       loops_(scene.tools.size(), tissue::ForceLoop(options.force)),
       handle_(handle),
@@ -103,6 +104,7 @@ void ToolListener::take_pose(const Target& target, std::size_t tool, const Event
   heard.is_there = true;
   heard.when = ros::WallTime::now();
   heard.stamp = sample.stamp;
+  meters_[tool].add((ros::Time::now() - event.getReceiptTime()).toSec());
 }
 
 void ToolListener::take_grip(const Target& target, std::size_t tool, const Event& event) {
@@ -127,6 +129,7 @@ void ToolListener::answer(const Target& target, const tissue::ToolSample& sample
     loop.set_tissue(progress->tissue[sample.tool]);
     heard.felt = progress;
   }
+  if (target.worker->is_paused()) loop.stop();
   const double dt = 1e-9 * static_cast<double>(sample.stamp - heard.stamp);
   const tissue::Vec3 force =
       loop.force_at(sample.pose->position, heard.is_there ? std::clamp(dt, 0.0, kLongest) : 0.0);

@@ -36,6 +36,8 @@ class ToolListener {
   void set_worker(std::shared_ptr<SceneWorker> worker, const std::string& frame);
 
   std::uint64_t dropped() const { return dropped_; }
+  /// Of a tool's poses, from when they were received until their force is sent [s].
+  Meter& meter(std::size_t tool) { return meters_[tool]; }
 
  private:
   // What belongs to one mesh.
@@ -81,6 +83,7 @@ class ToolListener {
   std::shared_ptr<const Target> target_;
   std::atomic<std::uint64_t> dropped_{0};
 
+  std::vector<Meter> meters_;
   std::vector<Heard> heard_;
   std::vector<tissue::ForceLoop> loops_;
   ros::CallbackQueue queue_;

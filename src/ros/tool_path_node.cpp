@@ -26,22 +26,14 @@ tissue::Vec3 place(const char* name, const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-void require_within(const char* name, double value, double highest) {
-  if (value > 0.0 && value <= highest) return;
-  throw InputError(ErrorCode::kParam, std::string("~") + name + ": " + tissue::to_text(value) +
-                                          " is not between 0 and " + tissue::to_text(highest));
-}
-
 }  // namespace
 
 std::vector<tissue::StampedPose> path_of(const ToolPathNodeParameters& parameters) {
-  require_within("period", parameters.period, 1e6);
   if (parameters.kind == "line") {
     const tissue::Vec3 from = place("from", parameters.from), to = place("to", parameters.to);
     return tissue::line_path(from, to, parameters.period);
   }
   if (parameters.kind == "circle") {
-    require_within("radius", parameters.radius, 10.0);
     const tissue::Vec3 centre = place("centre", parameters.centre),
                        axis = place("axis", parameters.axis);
     return tissue::circle_path(centre, axis, parameters.radius, parameters.period);
@@ -57,9 +49,9 @@ std::vector<tissue::StampedPose> path_of(const ToolPathNodeParameters& parameter
   return path;
 }
 
-ToolPathNode::ToolPathNode(ros::NodeHandle handle, const ToolPathNodeParameters& parameters)
+ToolPathNode::ToolPathNode(ros::NodeHandle handle, const ros::NodeHandle&,
+                           const ToolPathNodeParameters& parameters)
     : parameters_(parameters), path_(path_of(parameters)) {
-  require_within("rate", parameters.rate, 10000.0);
   publisher_ = handle.advertise<geometry_msgs::PoseStamped>(parameters.tool + "/measured_cp", 1);
   timer_ = handle.createWallTimer(ros::WallDuration(1.0 / parameters.rate),
                                   [this](const ros::WallTimerEvent&) { publish(); });

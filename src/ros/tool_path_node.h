@@ -12,7 +12,8 @@ namespace tissue_ros {
 class ToolPathNode {
  public:
   /// Throws tissue::InputError that names the parameter.
-  ToolPathNode(ros::NodeHandle handle, const ToolPathNodeParameters& parameters);
+  ToolPathNode(ros::NodeHandle handle, const ros::NodeHandle& private_handle,
+               const ToolPathNodeParameters& parameters);
 
  private:
   void publish();

@@ -3,10 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_ros;
-  using Parameters = ToolPathNodeParameters;
-  return run_node<Parameters>(
-      argc, argv, "tool_path_node",
-      [](const ros::NodeHandle& handle, const ros::NodeHandle&, const Parameters& parameters) {
-        return std::make_unique<ToolPathNode>(handle, parameters);
-      });
+  return run_node<ToolPathNode, ToolPathNodeParameters>(argc, argv, "tool_path_node");
 }

@@ -89,7 +89,8 @@ PreparedVolume prepare_volume(const VolumeNodeParameters& parameters) {
   return prepared;
 }
 
-VolumeNode::VolumeNode(ros::NodeHandle handle, const VolumeNodeParameters& parameters) {
+VolumeNode::VolumeNode(ros::NodeHandle handle, const ros::NodeHandle&,
+                       const VolumeNodeParameters& parameters) {
   const PreparedVolume prepared = prepare_volume(parameters);
   // The mask goes first: who builds when the volume arrives has it then.
   if (prepared.mask) {

@@ -24,7 +24,8 @@ PreparedVolume prepare_volume(const VolumeNodeParameters& parameters);
 /// E_TOO_LARGE for what no message can carry.
 class VolumeNode {
  public:
-  VolumeNode(ros::NodeHandle handle, const VolumeNodeParameters& parameters);
+  VolumeNode(ros::NodeHandle handle, const ros::NodeHandle& private_handle,
+             const VolumeNodeParameters& parameters);
 
  private:
   ros::Publisher volume_publisher_;

@@ -3,10 +3,5 @@
 
 int main(int argc, char** argv) {
   using namespace tissue_ros;
-  using Parameters = VolumeNodeParameters;
-  return run_node<Parameters>(
-      argc, argv, "volume_node",
-      [](const ros::NodeHandle& handle, const ros::NodeHandle&, const Parameters& parameters) {
-        return std::make_unique<VolumeNode>(handle, parameters);
-      });
+  return run_node<VolumeNode, VolumeNodeParameters>(argc, argv, "volume_node");
 }

@@ -38,7 +38,9 @@ template <class Parameters>
 void expect_defaults(const YAML::Node& yaml) {
   Parameters parameters;
   std::size_t count = 0;
-  parameters.visit([&](const char* name, auto& value) { compare(yaml, name, value, count); });
+  parameters.visit([&](const char* name, auto& value, const auto&...) {
+    compare(yaml, name, value, count);
+  });
   EXPECT_EQ(yaml.size(), count);
 }
 
@@ -71,9 +73,6 @@ TEST(ToolPath, NamesTheParameterThatIsWrong) {
     EXPECT_NEAR(arm.norm(), 0.01, 1e-6);
     EXPECT_NEAR(arm.z(), 0.0, 1e-15);
   }
-  parameters.period = 0.0;
-  EXPECT_EQ(refusal([&] { path_of(parameters); }),
-            "E_PARAM: ~period: 0 is not between 0 and 1e+06");
 }
 
 TEST(Result, HasTheConstantsOfTheCode) {

@@ -29,10 +29,11 @@ void wait_for(const Condition& condition) {
 }
 
 double farthest(SceneWorker& worker) {
-  const auto state = worker.state();
+  const auto view = worker.view();
+  const auto& places = view->state.positions;
   double most = 0.0;
-  for (std::size_t v = 0; v < state->positions.size(); ++v) {
-    most = std::max(most, (state->positions[v] - worker.body().rest[v].cast<double>()).norm());
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    most = std::max(most, (places[v] - worker.body().rest[v].cast<double>()).norm());
   }
   return most;
 }
@@ -65,7 +66,7 @@ TEST(SceneWorker, AReplayUsesEveryPoseAndTellsWhenCloudsAreDue) {
   constexpr int kPoses = 100;
   {
     SceneWorker worker(scene(), options,
-                       [&](std::int64_t stamp, const tissue::State&) { clouds.push_back(stamp); },
+                       [&](std::int64_t stamp, const tissue::Scene&) { clouds.push_back(stamp); },
                        {});
     for (int i = 0; i < kPoses; ++i) worker.put(finger(i, 0.001));
     wait_for([&] { return worker.progress()->steps == kPoses + 1u; });
@@ -89,6 +90,41 @@ TEST(SceneWorker, WhatCannotBeDoneIsTold) {
   // It serves on.
   worker.put(finger(1, 0.001));
   wait_for([&] { return worker.progress()->stamp == finger(1, 0.0).stamp; });
+}
+
+TEST(SceneWorker, WhilePausedNothingMovesAndThenTheNewestPoseCounts) {
+  SceneWorker worker(scene(), {}, {}, {});
+  worker.pause(true);
+  EXPECT_TRUE(worker.is_paused());
+  for (int i = 0; i < 10; ++i) EXPECT_TRUE(worker.put(finger(i, -0.001)));
+  // A reset is done while paused; poses from before it are gone.
+  worker.reset();
+  EXPECT_EQ(worker.progress()->steps, 2u);
+  EXPECT_EQ(farthest(worker), 0.0);
+  for (int i = 10; i < 20; ++i) EXPECT_TRUE(worker.put(finger(i, -0.001)));
+  worker.pause(false);
+  wait_for([&] { return worker.progress()->steps == 3u; });
+  EXPECT_EQ(worker.progress()->stamp, finger(19, 0.0).stamp);
+  EXPECT_GT(farthest(worker), 0.0003);
+}
+
+TEST(SceneWorker, AReplayThatWasPausedLosesNothing) {
+  SceneWorkerOptions options;
+  options.deterministic = true;
+  SceneWorker worker(scene(), options, [](std::int64_t, const tissue::Scene&) {}, {});
+  worker.pause(true);
+  constexpr int kPoses = 50;
+  for (int i = 0; i < kPoses; ++i) worker.put(finger(i, -0.001));
+  EXPECT_EQ(worker.progress()->steps, 1u);
+  worker.pause(false);
+  wait_for([&] { return worker.progress()->steps == kPoses + 1u; });
+  EXPECT_GT(farthest(worker), 0.0003);
+  worker.reset();
+  EXPECT_EQ(farthest(worker), 0.0);
+  // From the start again.
+  for (int i = 0; i < kPoses; ++i) worker.put(finger(i, -0.001));
+  wait_for([&] { return worker.progress()->steps == 2u * (kPoses + 1u); });
+  EXPECT_GT(farthest(worker), 0.0003);
 }
 
 }  // namespace

@@ -8,4 +8,7 @@ namespace tissue {
 /// no more than its own limit on address space leaves. The largest number where neither is known.
 std::size_t available_memory();
 
+/// Bytes of this process that are in memory now; 0 where that is not known.
+std::size_t resident_memory();
+
 }  // namespace tissue

@@ -11,6 +11,8 @@ namespace tissue {
 /// key. Keys that the model does not use (`material`, `anchors`, `probes`, `solver`,
 /// `element_order`, `duration`, `dt`) are checked and otherwise ignored.
 SceneDescription parse_scene(const std::string& yaml);
+/// What a scene file holds. Throws InputError E_FILE if it cannot be read.
+std::string scene_text(const std::string& path);
 SceneDescription read_scene(const std::string& path);
 
 }  // namespace tissue

@@ -24,18 +24,29 @@ std::size_t system_has() {
   return kUnknown;
 }
 
+struct OwnMemory {
+  std::size_t all = 0, resident = 0;
+};
+
+OwnMemory own_memory() {
+  std::ifstream file("/proc/self/statm");
+  OwnMemory pages;
+  file >> pages.all >> pages.resident;
+  const auto size = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return {pages.all * size, pages.resident * size};
+}
+
 std::size_t limit_leaves() {
   rlimit limit{};
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnknown;
-  std::ifstream file("/proc/self/statm");
-  std::size_t pages = 0;
-  file >> pages;
-  const std::size_t used = pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t used = own_memory().all;
   return limit.rlim_cur - std::min<std::size_t>(limit.rlim_cur, used);
 }
 
 }  // namespace
 
 std::size_t available_memory() { return std::min(system_has(), limit_leaves()); }
+
+std::size_t resident_memory() { return own_memory().resident; }
 
 }  // namespace tissue

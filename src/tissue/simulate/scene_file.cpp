@@ -207,8 +207,10 @@ SceneDescription parse_scene(const std::string& yaml) {
   return scene_from(YamlReader(yaml, {"scene", ErrorCode::kScene}));
 }
 
+std::string scene_text(const std::string& path) { return text_of_file(path, "scene"); }
+
 SceneDescription read_scene(const std::string& path) {
-  return parse_scene(text_of_file(path, "scene"));
+  return parse_scene(scene_text(path));
 }
 
 }  // namespace tissue
