@@ -10,12 +10,14 @@ add_library(tissue_ros
   src/ros/bag_run.cpp
   src/ros/convert.cpp
   src/ros/deformer_node.cpp
+  src/ros/device_adapter_node.cpp
   src/ros/device_messages.cpp
   src/ros/display_mesh.cpp
   src/ros/kept_state.cpp
   src/ros/markers.cpp
   src/ros/master_watch.cpp
   src/ros/mesher_node.cpp
+  src/ros/mouse_tool_node.cpp
   src/ros/node_main.cpp
   src/ros/scene_worker.cpp
   src/ros/settings.cpp
@@ -34,7 +36,8 @@ target_link_libraries(run_scene tissue_ros)
 target_include_directories(run_scene PRIVATE src)
 target_compile_definitions(run_scene PRIVATE TISSUE_WITH_BAGS)
 
-foreach(node volume_node mesher_node deformer_node tool_path_node)
+set(TISSUE_NODES volume_node mesher_node deformer_node tool_path_node mouse_tool_node device_adapter_node)
+foreach(node ${TISSUE_NODES})
   add_executable(${node} src/ros/${node}_main.cpp src/tissue/base/memory_meter.cpp)
   target_link_libraries(${node} tissue_ros)
 endforeach()
@@ -44,7 +47,7 @@ add_library(tissue_nodelets MODULE src/ros/nodelets.cpp)
 target_link_libraries(tissue_nodelets tissue_ros)
 
 install(TARGETS
-    accuracy_study mesh_volume run_scene volume_node mesher_node deformer_node tool_path_node
+    accuracy_study mesh_volume run_scene ${TISSUE_NODES}
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS
     tissue_base tissue_field tissue_itk tissue_lattice tissue_mesh_file tissue_nodelets tissue_refine tissue_ros

@@ -150,4 +150,40 @@ struct ToolPathNodeParameters {
   }
 };
 
+struct MouseToolNodeParameters {
+  std::string tool = "tool";
+  std::string frame_id = "patient";
+  std::vector<double> at = {0.0, 0.0, 0.1};
+  double radius = 0.005;
+  double rate = 100.0;
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("tool", tool);
+    visitor("frame_id", frame_id);
+    visitor("at", at);
+    visitor("radius", radius, Range{1e-6, 10});
+    visitor("rate", rate, kRate);
+  }
+};
+
+struct DeviceAdapterNodeParameters {
+  std::string device = "omni";
+  std::string name = "phantom";
+  std::string tool = "tool";
+  std::string frame_id = "patient";
+  double scale = 0.001;
+  double force_timeout = 0.1;
+
+  template <class Visitor>
+  void visit(Visitor&& visitor) {
+    visitor("device", device);
+    visitor("name", name);
+    visitor("tool", tool);
+    visitor("frame_id", frame_id);
+    visitor("scale", scale, Range{1e-9, 1e9});
+    visitor("force_timeout", force_timeout, kRate);
+  }
+};
+
 }  // namespace tissue_ros

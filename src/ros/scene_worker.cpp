@@ -136,8 +136,8 @@ void SceneWorker::run() {
   for (;;) {
     const Inbox inbox = next_inbox();
     if (inbox.is_over) return;
-    const std::lock_guard<std::mutex> lock(scene_mutex_);
     const Outcome outcome = guarded([&] {
+      const std::lock_guard<std::mutex> lock(scene_mutex_);
       if (inbox.has_reset) {
         start_again();
       } else if (options_.deterministic) {

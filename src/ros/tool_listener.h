@@ -83,10 +83,11 @@ class ToolListener {
   std::shared_ptr<const Target> target_;
   std::atomic<std::uint64_t> dropped_{0};
 
+  // Before all that unsubscribes from it.
+  ros::CallbackQueue queue_;
   std::vector<Meter> meters_;
   std::vector<Heard> heard_;
   std::vector<tissue::ForceLoop> loops_;
-  ros::CallbackQueue queue_;
   ros::NodeHandle handle_;
   std::vector<ros::Subscriber> subscribers_;
   ros::WallTimer timer_;

@@ -12,7 +12,9 @@ namespace {
 using tissue::ErrorCode;
 using tissue::InputError;
 
-tissue::Vec3 place(const char* name, const std::vector<double>& numbers) {
+}  // namespace
+
+tissue::Vec3 place_from(const char* name, const std::vector<double>& numbers) {
   if (numbers.size() != 3) {
     throw InputError(ErrorCode::kParam, std::string("~") + name + ": has " +
                                             std::to_string(numbers.size()) +
@@ -26,16 +28,15 @@ tissue::Vec3 place(const char* name, const std::vector<double>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-}  // namespace
-
 std::vector<tissue::StampedPose> path_of(const ToolPathNodeParameters& parameters) {
   if (parameters.kind == "line") {
-    const tissue::Vec3 from = place("from", parameters.from), to = place("to", parameters.to);
+    const tissue::Vec3 from = place_from("from", parameters.from),
+                       to = place_from("to", parameters.to);
     return tissue::line_path(from, to, parameters.period);
   }
   if (parameters.kind == "circle") {
-    const tissue::Vec3 centre = place("centre", parameters.centre),
-                       axis = place("axis", parameters.axis);
+    const tissue::Vec3 centre = place_from("centre", parameters.centre),
+                       axis = place_from("axis", parameters.axis);
     return tissue::circle_path(centre, axis, parameters.radius, parameters.period);
   }
   if (parameters.kind != "file") {

@@ -25,6 +25,9 @@ class ToolPathNode {
   ros::WallTimer timer_;
 };
 
+/// Three numbers of a parameter as a place [m]. Throws tissue::InputError that names it.
+tissue::Vec3 place_from(const char* name, const std::vector<double>& numbers);
+
 /// The path that the parameters say. Throws tissue::InputError that names the parameter.
 std::vector<tissue::StampedPose> path_of(const ToolPathNodeParameters& parameters);
 

@@ -51,6 +51,8 @@ TEST(Parameters, TheShippedFileHoldsTheDefaultsOfTheCode) {
   expect_defaults<MesherNodeParameters>(yaml["mesher_node"]);
   expect_defaults<DeformerNodeParameters>(yaml["deformer_node"]);
   expect_defaults<ToolPathNodeParameters>(yaml["tool_path_node"]);
+  expect_defaults<MouseToolNodeParameters>(yaml["mouse_tool_node"]);
+  expect_defaults<DeviceAdapterNodeParameters>(yaml["device_adapter_node"]);
 }
 
 TEST(ToolPath, NamesTheParameterThatIsWrong) {
