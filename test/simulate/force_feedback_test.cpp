@@ -80,7 +80,10 @@ TEST(ForceFeedback, ForceAndTorqueAreTheEnergysDerivativesAlongTheToolsMotion) {
     // What the anchors bear.
     EXPECT_LE((felt.force + scene.anchor_forces()[0]).norm(), 1e-6 * felt.force.norm())
         << model << order << shape;
-    EXPECT_LE((felt.force - *scene.tool_forces()[0]).norm(), 1e-12 * felt.force.norm());
+    // Of where the nodes are, which a superposition knows in single precision only; what is felt
+    // comes in double precision straight from how the tool moved.
+    const double precise = model == "linear" && shape == kSphere ? 1e-6 : 1e-12;
+    EXPECT_LE((felt.force - *scene.tool_forces()[0]).norm(), precise * felt.force.norm());
   });
 }
 

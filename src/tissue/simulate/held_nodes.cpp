@@ -129,19 +129,24 @@ void HeldNodes::place(const ToolPoses& tools, std::vector<Vec3>& vertices) const
   }
 }
 
-Wrench HeldNodes::wrench(std::size_t tool, const Eigen::VectorXd& gradient,
-                         const Eigen::VectorXd& positions, const Vec3& centre) const {
-  Wrench sum;
-  const auto add = [&](std::size_t i, double share) {
-    sum.add(node(positions, i) - centre, -share * node(gradient, i));
-  };
-  for (const std::uint32_t v : grips_[tool].vertices()) add(v, 1.0);
+std::vector<HeldNodes::Share> HeldNodes::shares(std::size_t tool) const {
+  std::vector<Share> result;
+  for (const std::uint32_t v : grips_[tool].vertices()) result.push_back({v, 1.0});
   const int holder = static_cast<int>(anchor_count_ + tool);
   for (std::size_t i = 0; i < elements_.midpoints().size(); ++i) {
     if (!is_held_midpoint(i)) continue;
     for (const std::uint32_t end : elements_.midpoints()[i]) {
-      if (holders_[end] == holder) add(holders_.size() + i, 0.5);
+      if (holders_[end] == holder) result.push_back({holders_.size() + i, 0.5});
     }
+  }
+  return result;
+}
+
+Wrench HeldNodes::wrench(std::size_t tool, const Eigen::VectorXd& gradient,
+                         const Eigen::VectorXd& positions, const Vec3& centre) const {
+  Wrench sum;
+  for (const auto& [i, part] : shares(tool)) {
+    sum.add(node(positions, i) - centre, -part * node(gradient, i));
   }
   return sum;
 }

@@ -35,6 +35,12 @@ class HeldNodes {
   /// Puts the vertices that tools hold exactly where they belong.
   void place(const ToolPoses& tools, std::vector<Vec3>& vertices) const;
 
+  /// A node that a tool holds, wholly or together with another holder.
+  struct Share {
+    std::size_t node;
+    double part;
+  };
+  std::vector<Share> shares(std::size_t tool) const;
   /// Minus the sum of dE/dx over what each holder holds, anchors first, then tools: the tissue's
   /// force on it [N].
   std::vector<Vec3> forces(const Eigen::VectorXd& gradient) const;

@@ -18,7 +18,8 @@ void add_three(const float* __restrict__ x, const float* __restrict__ y,
 }  // namespace
 
 LinearResponse::LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& base,
-                               const std::vector<Eigen::VectorXd>& motions)
+                               const std::vector<Eigen::VectorXd>& motions,
+                               const std::vector<std::size_t>& watched)
     : base_(base),
       float_base_(base.data(), base.data() + base.size()),
       base_energy_(equilibrium.energy(base)) {
@@ -31,6 +32,19 @@ LinearResponse::LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& 
     forces.col(k) = equilibrium.gradient(base + answers.col(k)) - base_gradient;
     const Eigen::VectorXf column = answers.col(k).cast<float>();
     columns_.emplace_back(column.data(), column.data() + column.size());
+  }
+  const auto rows = 3 * static_cast<Eigen::Index>(watched.size());
+  watched_base_.resize(rows);
+  watched_base_gradient_.resize(rows);
+  watched_columns_.resize(rows, count);
+  watched_forces_.resize(rows, count);
+  for (std::size_t w = 0; w < watched.size(); ++w) {
+    const auto to = 3 * static_cast<Eigen::Index>(w),
+               from = 3 * static_cast<Eigen::Index>(watched[w]);
+    watched_base_.segment<3>(to) = base.segment<3>(from);
+    watched_base_gradient_.segment<3>(to) = base_gradient.segment<3>(from);
+    watched_columns_.middleRows<3>(to) = answers.middleRows<3>(from);
+    watched_forces_.middleRows<3>(to) = forces.middleRows<3>(from);
   }
   slopes_ = answers.transpose() * base_gradient;
   curvatures_ = answers.transpose() * forces;
@@ -61,6 +75,14 @@ Eigen::VectorXd LinearResponse::superpose(const Eigen::VectorXd& amounts) const 
   Eigen::VectorXd positions(base_.size());
   superpose(amounts, base_.data(), positions.data(), static_cast<std::size_t>(positions.size()));
   return positions;
+}
+
+Eigen::VectorXd LinearResponse::watched_positions(const Eigen::VectorXd& amounts) const {
+  return watched_base_ + watched_columns_ * amounts;
+}
+
+Eigen::VectorXd LinearResponse::watched_gradient(const Eigen::VectorXd& amounts) const {
+  return watched_base_gradient_ + watched_forces_ * amounts;
 }
 
 double LinearResponse::energy(const Eigen::VectorXd& amounts) const {

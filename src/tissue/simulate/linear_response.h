@@ -9,9 +9,10 @@ namespace tissue {
 class LinearResponse {
  public:
   /// `base`: positions of all nodes at an equilibrium [m]; `motions` of held nodes, a multiple of
-  /// three.
+  /// three; `watched` nodes, of which gradients are known too.
   LinearResponse(Equilibrium& equilibrium, const Eigen::VectorXd& base,
-                 const std::vector<Eigen::VectorXd>& motions);
+                 const std::vector<Eigen::VectorXd>& motions,
+                 const std::vector<std::size_t>& watched);
 
   /// Positions of the first vertices: base + Σ amount · column. In single precision, unless all
   /// amounts are zero, in one pass for each three columns whose amounts are not: reading it all
@@ -20,6 +21,9 @@ class LinearResponse {
   /// The same for all nodes, with the base in double precision.
   Eigen::VectorXd superpose(const Eigen::VectorXd& amounts) const;
 
+  /// Positions of the watched nodes, and dE/dx there [N].
+  Eigen::VectorXd watched_positions(const Eigen::VectorXd& amounts) const;
+  Eigen::VectorXd watched_gradient(const Eigen::VectorXd& amounts) const;
   /// [J]; exact, because the energy is quadratic.
   double energy(const Eigen::VectorXd& amounts) const;
 
@@ -31,6 +35,9 @@ class LinearResponse {
   Eigen::VectorXd base_;
   std::vector<float> float_base_;
   std::vector<std::vector<float>> columns_;
+  // Of the watched nodes: at the base, and by the amounts.
+  Eigen::VectorXd watched_base_, watched_base_gradient_;
+  Eigen::MatrixXd watched_columns_, watched_forces_;
   // The energy at the base, and its derivatives by the amounts there.
   double base_energy_;
   Eigen::VectorXd slopes_;

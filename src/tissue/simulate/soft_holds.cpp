@@ -34,7 +34,7 @@ bool SoftHolds::are_in(const SceneDescription& scene) {
 
 bool SoftHolds::any_pad() const { return std::any_of(tools_.begin(), tools_.end(), is_pad); }
 
-bool SoftHolds::take(const ToolPoses& tools, const Eigen::VectorXd& positions) {
+bool SoftHolds::take(const ToolPoses& tools, const PositionsNow& positions_now) {
   bool changed = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const ToolDescription& tool = tools_[i];
@@ -47,7 +47,7 @@ bool SoftHolds::take(const ToolPoses& tools, const Eigen::VectorXd& positions) {
         pads_[i].offsets.clear();
         break;
       case Jaw::Act::kTake:
-        springs_.attach(holder, positions, [&](const Vec3& place) {
+        springs_.attach(holder, positions_now(), [&](const Vec3& place) {
           return tool.pad_stiffness * share_at((place - tools[i]->position).norm(), tool.radius);
         });
         for (const SurfaceSprings::Spring& spring : springs_.springs()) {

@@ -22,7 +22,7 @@ class SoftHolds : public SolidEffect, public ToolLink {
   const ToolLink* link() const override { return this; }
   bool any_pad() const;
 
-  bool take(const ToolPoses& tools, const Eigen::VectorXd& positions) override;
+  bool take(const ToolPoses& tools, const PositionsNow& positions_now) override;
   bool follow(const ToolPoses& tools, const Eigen::VectorXd& positions) override;
   /// Tools hold nothing.
   void reset() override;

@@ -6,10 +6,16 @@
 #include "tissue/simulate/finite_elements.h"
 #include "tissue/simulate/scene.h"
 
+#include <functional>
+
 namespace tissue {
 
 class HeldNodes;
 class ToolLink;
+class ToolResponse;
+
+/// Gives the positions of all nodes, which after a superposition are found out only when asked for.
+using PositionsNow = std::function<const Eigen::VectorXd&()>;
 
 /// What an effect may look at when it is made; all of it outlives the effect.
 struct SolidParts {
@@ -23,13 +29,14 @@ struct SolidParts {
 /// What an effect may look at after a step.
 struct SolidView {
   const ToolPoses& tools;
-  /// Of all nodes.
-  const Eigen::VectorXd& positions;
+  const PositionsNow& positions;
   Equilibrium& equilibrium;
   const HeldNodes& held;
   const std::vector<const ToolLink*>& links;
   /// Only tools have moved since the last step, of a body in which all is linear.
   bool is_superposed = false;
+  /// How it was superposed; null if it was not.
+  const ToolResponse* response = nullptr;
 };
 
 /// What an effect is in a solid: the one shape of all of them. Whatever one does not override is
@@ -55,7 +62,7 @@ class SolidEffect {
   virtual bool loads() const { return energy() != nullptr; }
 
   /// Tools take hold of the body as it is, or let go. True if forces change by that.
-  virtual bool take(const ToolPoses&, const Eigen::VectorXd&) { return false; }
+  virtual bool take(const ToolPoses&, const PositionsNow&) { return false; }
   /// How much of the way from `from` to `to` tools may go at once, from 0 to 1.
   virtual double stride(const ToolPoses&, const ToolPoses&, const Eigen::VectorXd&) { return 1.0; }
   /// Tools are there now. True if forces change by that.

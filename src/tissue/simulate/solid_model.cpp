@@ -30,7 +30,7 @@ class SolidModel : public DeformationModel {
   }
 
   StepReport step(const ToolPoses& tools, double dt) override {
-    const bool changes = actions_.take(tools, state_.positions, positions_of_parts());
+    const bool changes = actions_.take(tools, state_.positions, positions_now_);
     if (actions_.regrips()) equilibrium_.hold(solid_.held().flags());
     const bool is_linear = solid_.is_linear() && !dynamics_,
                keeps = is_linear && !changes && settled_;
@@ -84,7 +84,7 @@ class SolidModel : public DeformationModel {
  private:
   // Finds the equilibrium with the tools where they are, or as far on their way as there is one.
   void settle(const ToolPoses& tools, bool changes) {
-    positions_ = positions_now();
+    if (response_) positions_ = response_->positions();
     response_.reset();
     bool must_solve = changes || !settled_;
     const StepReport before = std::exchange(report_, {});
@@ -113,6 +113,7 @@ class SolidModel : public DeformationModel {
     if (!solid_.held().any_grip()) return;
     if (!response_) response_.emplace(equilibrium_, solid_.held(), positions_, actions_.reached());
     response_->follow(tools, state_.positions);
+    superposed_.resize(0);
     solid_.held().place(tools, state_.positions);
     actions_.set_reached(tools);
     report_.iterations = 0;
@@ -120,11 +121,10 @@ class SolidModel : public DeformationModel {
   }
 
   // Of all nodes, also after a superposition.
-  Eigen::VectorXd positions_now() const { return response_ ? response_->positions() : positions_; }
-
-  // The same for effects to look at: without any, superposing all nodes would be in vain.
-  Eigen::VectorXd positions_of_parts() const {
-    return solid_.parts().empty() ? Eigen::VectorXd() : positions_now();
+  const Eigen::VectorXd& positions_now() const {
+    if (!response_) return positions_;
+    if (superposed_.size() == 0) superposed_ = response_->positions();
+    return superposed_;
   }
 
   // Goes on in time while the tools move to where they are.
@@ -177,9 +177,13 @@ class SolidModel : public DeformationModel {
 
   void finish(const ToolPoses& tools, bool is_superposed) {
     if (solid_.parts().empty()) return;
-    const Eigen::VectorXd positions = positions_now();
-    const SolidView view = {tools,         positions,      equilibrium_,
-                            solid_.held(), solid_.links(), is_superposed};
+    const SolidView view = {tools,
+                            positions_now_,
+                            equilibrium_,
+                            solid_.held(),
+                            solid_.links(),
+                            is_superposed,
+                            response_ ? &*response_ : nullptr};
     for (const ToolActions::Part& part : solid_.parts()) {
       const CostClock clock(part.cost);
       part.effect->after_step(view);
@@ -210,6 +214,11 @@ class SolidModel : public DeformationModel {
   State state_;
   // For small strain, while what the tools hold stays the same.
   std::optional<ToolResponse> response_;
+  // By it, once somebody has asked.
+  mutable Eigen::VectorXd superposed_;
+  const PositionsNow positions_now_ = [this]() -> const Eigen::VectorXd& {
+    return positions_now();
+  };
   StepReport report_;
   bool settled_ = true;
 };

@@ -10,7 +10,7 @@ ToolActions::ToolActions(const std::vector<ToolDescription>& tools, HeldNodes& h
     : tools_(tools), held_(held), parts_(std::move(parts)) {}
 
 bool ToolActions::take(const ToolPoses& tools, const std::vector<Vec3>& vertices,
-                       const Eigen::VectorXd& positions) {
+                       const PositionsNow& positions) {
   regrips_ = held_.update(tools, vertices);
   bool changes = regrips_;
   reached_ = between(reached_.empty() ? tools : reached_, tools, 0.0);

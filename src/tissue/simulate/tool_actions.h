@@ -24,7 +24,7 @@ class ToolActions {
   /// Tools take hold or let go. True if that changes forces, `regrips()` if it changes which nodes
   /// are held.
   bool take(const ToolPoses& tools, const std::vector<Vec3>& vertices,
-            const Eigen::VectorXd& positions);
+            const PositionsNow& positions);
   bool regrips() const { return regrips_; }
   void release();
 

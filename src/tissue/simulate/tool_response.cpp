@@ -28,12 +28,43 @@ std::vector<Eigen::VectorXd> unit_motions(const HeldNodes& held, const Eigen::Ve
   return motions;
 }
 
+std::vector<std::vector<HeldNodes::Share>> shares_of(const HeldNodes& held, std::size_t tools) {
+  std::vector<std::vector<HeldNodes::Share>> shares;
+  for (std::size_t tool = 0; tool < tools; ++tool) shares.push_back(held.shares(tool));
+  return shares;
+}
+
+// One tool after the other.
+std::vector<std::size_t> nodes_of(const std::vector<std::vector<HeldNodes::Share>>& shares) {
+  std::vector<std::size_t> nodes;
+  for (const auto& of_tool : shares) {
+    for (const HeldNodes::Share& share : of_tool) nodes.push_back(share.node);
+  }
+  return nodes;
+}
+
 }  // namespace
 
 ToolResponse::ToolResponse(Equilibrium& equilibrium, const HeldNodes& held,
                            const Eigen::VectorXd& base, ToolPoses base_tools)
     : base_tools_(std::move(base_tools)),
-      response_(equilibrium, base, unit_motions(held, base, base_tools_)) {}
+      shares_(shares_of(held, base_tools_.size())),
+      response_(equilibrium, base, unit_motions(held, base, base_tools_), nodes_of(shares_)) {}
+
+Wrench ToolResponse::wrench(std::size_t tool, const Vec3& centre) const {
+  const Eigen::VectorXd positions = response_.watched_positions(amounts_),
+                        gradient = response_.watched_gradient(amounts_);
+  Eigen::Index at = 0;
+  for (std::size_t before = 0; before < tool; ++before) {
+    at += 3 * static_cast<Eigen::Index>(shares_[before].size());
+  }
+  Wrench sum;
+  for (const HeldNodes::Share& share : shares_[tool]) {
+    sum.add(positions.segment<3>(at) - centre, -share.part * gradient.segment<3>(at));
+    at += 3;
+  }
+  return sum;
+}
 
 void ToolResponse::follow(const ToolPoses& tools, std::vector<Vec3>& vertices) {
   amounts_.setZero(kMotions * static_cast<Eigen::Index>(tools.size()));

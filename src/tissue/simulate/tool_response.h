@@ -17,9 +17,13 @@ class ToolResponse {
   /// The same of all nodes, for the tools followed last.
   Eigen::VectorXd positions() const { return response_.superpose(amounts_); }
   double energy() const { return response_.energy(amounts_); }
+  /// Of the tissue on a tool that holds it, followed last, about `centre`.
+  Wrench wrench(std::size_t tool, const Vec3& centre) const;
 
  private:
   ToolPoses base_tools_;
+  // What each tool holds.
+  std::vector<std::vector<HeldNodes::Share>> shares_;
   LinearResponse response_;
   // How each tool has moved since the base: its translation, then R − I column by column.
   Eigen::VectorXd amounts_;

@@ -68,7 +68,8 @@ class Contact : public SolidEffect, public ToolLink {
     for (std::size_t i = 0; i < tools_.size(); ++i) lift(i);
   }
 
-  bool take(const ToolPoses& tools, const Eigen::VectorXd& positions) override {
+  bool take(const ToolPoses& tools, const PositionsNow& positions_now) override {
+    const Eigen::VectorXd& positions = positions_now();
     bool changes = false;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       if (!energy_.capsule(i)) continue;
@@ -166,7 +167,7 @@ class Contact : public SolidEffect, public ToolLink {
       const Capsule wished = capsule_at(tools_[i], *solid.tools[i]);
       states_[i].lags =
           wished.tip != energy_.capsule(i)->tip || wished.end != energy_.capsule(i)->end;
-      deepest_ = std::max(deepest_, energy_.depth(i, solid.positions));
+      deepest_ = std::max(deepest_, energy_.depth(i, solid.positions()));
     }
   }
 

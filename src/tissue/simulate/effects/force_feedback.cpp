@@ -1,5 +1,6 @@
 #include "../effect_kind.h"
 #include "../held_nodes.h"
+#include "../tool_response.h"
 
 #include <Eigen/LU>
 
@@ -14,28 +15,29 @@ struct ForceFeedbackOptions {};
 // Moving the tool by a unit moves what it holds and pulls at what it touches; what the free nodes
 // then do, and the forces that this takes, are a linear solve for each axis.
 Mat3 compliance_of(std::size_t tool, const SolidView& solid) {
+  const Eigen::VectorXd& positions = solid.positions();
   const Vec3& centre = solid.tools[tool]->position;
   std::vector<Eigen::VectorXd> motions, pulls;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 unit = Vec3::Unit(axis);
     motions.push_back(
-        solid.held.motion_of(tool, solid.positions, centre, [&](const Vec3&) { return unit; }));
-    pulls.push_back(Eigen::VectorXd::Zero(solid.positions.size()));
+        solid.held.motion_of(tool, positions, centre, [&](const Vec3&) { return unit; }));
+    pulls.push_back(Eigen::VectorXd::Zero(positions.size()));
     for (const ToolLink* link : solid.links) {
-      if (link->acts_on(tool)) link->add_pull(tool, solid.positions, unit, pulls.back());
+      if (link->acts_on(tool)) link->add_pull(tool, positions, unit, pulls.back());
     }
   }
   std::vector<Eigen::VectorXd> forces;
   const std::vector<Eigen::VectorXd> responses =
-      solid.equilibrium.responses(solid.positions, motions, pulls, forces);
+      solid.equilibrium.responses(positions, motions, pulls, forces);
   if (responses.empty()) return Mat3::Zero();
   Mat3 stiffness;
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
-    Vec3 change = solid.held.wrench(tool, forces[k], solid.positions, centre).force;
+    Vec3 change = solid.held.wrench(tool, forces[k], positions, centre).force;
     for (const ToolLink* link : solid.links) {
       if (!link->acts_on(tool)) continue;
-      change += link->force_change(tool, solid.positions, Vec3::Unit(axis), responses[k]);
+      change += link->force_change(tool, positions, Vec3::Unit(axis), responses[k]);
     }
     stiffness.col(axis) = -change;
   }
@@ -45,6 +47,17 @@ Mat3 compliance_of(std::size_t tool, const SolidView& solid) {
   return compliance.allFinite() ? compliance : Mat3(Mat3::Zero());
 }
 
+Wrench wrench_of(std::size_t tool, const SolidView& solid, Eigen::VectorXd& gradient) {
+  const Eigen::VectorXd& positions = solid.positions();
+  if (gradient.size() == 0) gradient = solid.equilibrium.gradient(positions);
+  const Vec3& centre = solid.tools[tool]->position;
+  Wrench wrench = solid.held.wrench(tool, gradient, positions, centre);
+  for (const ToolLink* link : solid.links) {
+    if (link->acts_on(tool)) wrench += link->wrench(tool, positions, centre);
+  }
+  return wrench;
+}
+
 class ForceFeedback : public SolidEffect {
  public:
   void reset() override { tools_.clear(); }
@@ -52,6 +65,7 @@ class ForceFeedback : public SolidEffect {
 
   void after_step(const SolidView& solid) override {
     tools_.resize(solid.tools.size());
+    // Of all nodes; found out only where no superposition knows what tools hold.
     Eigen::VectorXd gradient;
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       bool acts = solid.held.holds(i);
@@ -60,12 +74,9 @@ class ForceFeedback : public SolidEffect {
         tools_[i].reset();
         continue;
       }
-      if (gradient.size() == 0) gradient = solid.equilibrium.gradient(solid.positions);
-      const Vec3& centre = solid.tools[i]->position;
-      Wrench wrench = solid.held.wrench(i, gradient, solid.positions, centre);
-      for (const ToolLink* link : solid.links) {
-        if (link->acts_on(i)) wrench += link->wrench(i, solid.positions, centre);
-      }
+      const Wrench wrench = solid.response != nullptr
+                                ? solid.response->wrench(i, solid.tools[i]->position)
+                                : wrench_of(i, solid, gradient);
       const bool keep = solid.is_superposed && tools_[i];
       tools_[i] = {wrench, keep ? tools_[i]->compliance : compliance_of(i, solid)};
     }
