@@ -99,8 +99,11 @@ tissue::TetMesh from_message(const soft_tissue_sim::TetMesh& message) {
   }
   tissue::TetMesh mesh;
   mesh.frame_id = plain_frame(message.header.frame_id);
-  if (mesh.frame_id.empty()) {
-    throw InputError(ErrorCode::kFrame, "mesh: header.frame_id is empty");
+  if (mesh.frame_id.empty() || mesh.frame_id.size() > kMaxNameLength) {
+    throw InputError(ErrorCode::kFrame, "mesh: header.frame_id is empty or too long");
+  }
+  if (message.uuid.size() > kMaxNameLength) {
+    throw InputError(ErrorCode::kTooLarge, "mesh: uuid is too long");
   }
   mesh.vertices = grouped<tissue::Vec3f>("vertices", message.vertices);
   mesh.tets = grouped<tissue::Tet>("tetrahedra", message.tetrahedra);

@@ -17,6 +17,9 @@ namespace tissue_ros {
 /// A larger message cuts its subscriber off for good.
 constexpr std::size_t kMaxMessageBytes = 1000000000;
 
+/// No name that comes in a message is longer.
+constexpr std::size_t kMaxNameLength = 256;
+
 /// What a claimed size may cost at most.
 constexpr std::size_t kMaxMeshTets = 100000000;
 

@@ -14,6 +14,8 @@ namespace {
 using tissue::ErrorCode;
 using tissue::InputError;
 
+constexpr std::size_t kMaxSceneBytes = 1000000;
+
 bool same_mesh(const tissue::TetMesh& a, const tissue::TetMesh& b) {
   return a.uuid == b.uuid && a.frame_id == b.frame_id && a.vertices == b.vertices &&
          a.tets == b.tets && a.levels == b.levels && a.densities == b.densities &&
@@ -140,6 +142,11 @@ bool DeformerNode::load_scene(LoadScene::Request& request, LoadScene::Response& 
             ? request.yaml
             : tissue::scene_text(tissue::confined_path(state_folder(parameters_.folder),
                                                        request.path, /*must_exist=*/true));
+    if (yaml.size() > kMaxSceneBytes) {
+      throw InputError(ErrorCode::kTooLarge, "load_scene: yaml has " + std::to_string(yaml.size()) +
+                                                 " bytes, the limit is " +
+                                                 std::to_string(kMaxSceneBytes));
+    }
     // All that can fail comes before anything changes.
     tissue::SceneDescription scene = tissue::parse_scene(yaml);
     std::unique_ptr<Simulation> simulation;
@@ -170,7 +177,8 @@ bool DeformerNode::pause(Pause::Request& request, Pause::Response& response) {
 void DeformerNode::publish(const Simulation::Clouds& clouds) {
   cloud_publisher_.publish(clouds.cloud);
   probe_publisher_.publish(clouds.probes);
-  clouds_published_.add((ros::Time::now() - clouds.cloud->header.stamp).toSec());
+  // The difference of two times may be more than a ros::Duration holds.
+  clouds_published_.add(ros::Time::now().toSec() - clouds.cloud->header.stamp.toSec());
 }
 
 void DeformerNode::publish_clouds() {

@@ -70,7 +70,7 @@ geometry_msgs::PoseStamped in_frame(const geometry_msgs::PoseStamped& pose,
   const std::string& source = pose.header.frame_id;
   if (source == frame) return pose;
   if (source.empty()) refuse(topic, ErrorCode::kFrame, "header.frame_id is empty");
-  if (source.size() > 256) refuse(topic, ErrorCode::kFrame, "header.frame_id is too long");
+  if (source.size() > kMaxNameLength) refuse(topic, ErrorCode::kFrame, "header.frame_id is too long");
   if (transforms == nullptr) {
     refuse(topic, ErrorCode::kFrame, "frame '" + source + "' is not the mesh's, '" + frame + "'");
   }

@@ -12,6 +12,7 @@
 #include <soft_tissue_sim/TetMesh.h>
 
 #include <filesystem>
+#include <utility>
 
 namespace tissue_ros {
 namespace {
@@ -51,6 +52,7 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
   if (auto kept = kept_.mesh()) {
     const auto mesh = std::make_shared<const tissue::TetMesh>(std::move(*kept));
     const Outcome outcome = guarded([&] { publish(mesh); });
+    has_kept_mesh_ = outcome.ok();
     if (!outcome.ok()) report("kept mesh", outcome);
   }
 
@@ -95,7 +97,9 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
     const std::lock_guard<std::mutex> lock(data_mutex_);
     ready = volume_ != nullptr && (!parameters_.use_mask || mask_ != nullptr);
   }
-  if (parameters_.build_on_volume && ready) build_wanted_ = true;
+  if (!parameters_.build_on_volume || !ready) return;
+  // The first is the one that the kept mesh is of.
+  if (!std::exchange(has_kept_mesh_, false)) build_wanted_ = true;
 }
 
 bool MesherNode::serve(Request& request, Response& response) {

@@ -88,6 +88,7 @@ class MesherNode {
   std::unique_ptr<ActionServer> action_;
   diagnostic_updater::Updater diagnostics_;
   ros::WallTimer diagnostics_timer_;
+  bool has_kept_mesh_ = false;
   std::atomic<bool> build_wanted_{false}, ending_{false};
   std::vector<std::thread> build_threads_;
   std::atomic<bool> pursuing_{false};

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 
 namespace tissue_ros {
 namespace {
@@ -50,7 +51,8 @@ int run_process(int argc, char** argv, const char* name,
       ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.05));
     }
   }
-  if (!ros::ok()) ROS_FATAL("%s: somebody else has shut it down", name);
+  // ROS's own log is closed by then.
+  if (!ros::ok()) std::fprintf(stderr, "%s: somebody else has shut it down\n", name);
   end_node(!master_is_lost);
   // What was said last is on its way.
   ros::WallDuration(0.1).sleep();

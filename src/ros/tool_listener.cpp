@@ -104,7 +104,7 @@ void ToolListener::take_pose(const Target& target, std::size_t tool, const Event
   heard.is_there = true;
   heard.when = ros::WallTime::now();
   heard.stamp = sample.stamp;
-  meters_[tool].add((ros::Time::now() - event.getReceiptTime()).toSec());
+  meters_[tool].add(ros::Time::now().toSec() - event.getReceiptTime().toSec());
 }
 
 void ToolListener::take_grip(const Target& target, std::size_t tool, const Event& event) {

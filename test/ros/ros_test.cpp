@@ -1,5 +1,6 @@
 #include "ros/convert.h"
 #include "ros/display_mesh.h"
+#include "ros/guarded.h"
 #include "ros/markers.h"
 #include "ros/parameters.h"
 #include "ros/tool_path_node.h"
@@ -13,6 +14,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
 
 namespace {
 
@@ -38,9 +43,8 @@ template <class Parameters>
 void expect_defaults(const YAML::Node& yaml) {
   Parameters parameters;
   std::size_t count = 0;
-  parameters.visit([&](const char* name, auto& value, const auto&...) {
-    compare(yaml, name, value, count);
-  });
+  parameters.visit(
+      [&](const char* name, auto& value, const auto&...) { compare(yaml, name, value, count); });
   EXPECT_EQ(yaml.size(), count);
 }
 
@@ -206,6 +210,51 @@ TEST(DisplayMesh, KeepsToItsBudgetAndShowsTheInside) {
     EXPECT_LE(few.hull.size() + few.cut.size(), budget);
     EXPECT_GT(few.hull.size() + few.cut.size(), budget / 5);
   }
+}
+
+TEST(Printable, X5WhatOthersWroteIsOneLineOfALog) {
+  EXPECT_EQ(printable("frame 'a' is unknown"), "frame 'a' is unknown");
+  EXPECT_EQ(printable("a\nb\x1b[31m\x7f"), "a\\x0ab\\x1b[31m\\x7f");
+  EXPECT_EQ(printable(std::string(10000, 'x')).size(), 600u);
+  EXPECT_EQ(printable("\xc3\xa9"), "\xc3\xa9");
+  const Outcome outcome = guarded([] {
+    throw tissue::InputError(tissue::ErrorCode::kFrame,
+                             std::string("two\nlines") + std::string(5000, '.'));
+  });
+  EXPECT_EQ(outcome.sentence.find('\n'), std::string::npos);
+  EXPECT_LE(outcome.sentence.size(), 600u);
+}
+
+TEST(Convert, X5NamesOfAMeshAreShort) {
+  soft_tissue_sim::TetMesh message = to_message(small_mesh());
+  message.header.frame_id = std::string(257, 'f');
+  EXPECT_EQ(refusal([&] { from_message(message); }),
+            "E_FRAME: mesh: header.frame_id is empty or too long");
+  message.header.frame_id = "patient";
+  message.uuid = std::string(257, 'u');
+  EXPECT_EQ(refusal([&] { from_message(message); }), "E_TOO_LARGE: mesh: uuid is too long");
+}
+
+// F4, X4: what the sources must not say.
+TEST(Sources, F4_X4NoQueueIsEndlessAndNoShellIsCalled) {
+  namespace fs = std::filesystem;
+  const std::regex endless("(advertise|subscribe)<[^;]*\\([^;]*,\\s*0\\s*[,)]"),
+      shell("(^|[^_a-z])(system|popen|execl|execv)p?\\(");
+  std::size_t files = 0;
+  for (const auto& entry :
+       fs::recursive_directory_iterator(std::string(TISSUE_SOURCE_DIR) + "/src")) {
+    if (!entry.is_regular_file()) continue;
+    ++files;
+    std::ifstream stream(entry.path());
+    const std::string text((std::istreambuf_iterator<char>(stream)), {});
+    EXPECT_FALSE(std::regex_search(text, endless)) << entry.path();
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_FALSE(std::regex_search(line, shell)) << entry.path() << line;
+    }
+  }
+  EXPECT_GT(files, 100u);
+  EXPECT_TRUE(std::regex_search("handle.advertise<Cloud>(\"cloud\", 0)", endless));
 }
 
 }  // namespace

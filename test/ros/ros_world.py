@@ -1,0 +1,132 @@
+"""A roscore of one's own with nodes under it, to do to them what cannot be done to those of a test's own roscore."""
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import xmlrpc.client
+
+import rosgraph
+
+HEARING = """
+import json, sys, rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from sensor_msgs.msg import PointCloud2
+from soft_tissue_sim.msg import *
+from visualization_msgs.msg import MarkerArray
+rospy.init_node("ear", anonymous=True, disable_signals=True, disable_rosout=True)
+m = rospy.wait_for_message({topic!r}, {kind}, timeout={timeout})
+print(json.dumps({what}))
+"""
+CALLING = """
+import json, rospy
+from soft_tissue_sim.srv import *
+rospy.init_node("mouth", anonymous=True, disable_signals=True, disable_rosout=True)
+rospy.wait_for_service({name!r}, 20)
+answer = rospy.ServiceProxy({name!r}, {kind})(**json.loads({fields!r}))
+print(json.dumps([answer.result.code, answer.result.message]))
+"""
+
+
+class World:
+    def __init__(self):
+        self.folder = tempfile.mkdtemp()
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            self.port = probe.getsockname()[1]
+        self.uri = f"http://127.0.0.1:{self.port}"
+        self.env = {**os.environ, "ROS_MASTER_URI": self.uri, "ROS_IP": "127.0.0.1", "ROS_HOME": self.folder,
+                    "ROS_LOG_DIR": os.path.join(self.folder, "log"), "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1"}
+        self.started = []
+        self.core = self.start_core()
+
+    def start(self, *command, **options):
+        """A process of this world; its output is in `log_of` it."""
+        log = open(os.path.join(self.folder, f"output{len(self.started)}"), "wb")
+        process = subprocess.Popen(command, env={**self.env, **options.pop("env", {})}, stdout=log,
+                                   stderr=subprocess.STDOUT, start_new_session=True, **options)
+        process.log = log.name
+        self.started.append(process)
+        return process
+
+    def start_core(self):
+        core = self.start("roscore", "-p", str(self.port))
+        wait_for(lambda: rosgraph.is_master_online(self.uri), 20)
+        return core
+
+    def kill_core(self):
+        """roscore, and the master, which is a process of its own."""
+        master = xmlrpc.client.ServerProxy(self.uri).getPid("/world")[2]
+        os.killpg(self.core.pid, signal.SIGKILL)
+        self.core.wait()
+        os.kill(master, signal.SIGKILL)
+        wait_for(lambda: not rosgraph.is_master_online(self.uri), 10)
+
+    def launch(self, file, *arguments):
+        return self.start("roslaunch", "soft_tissue_sim", file, *arguments)
+
+    def node(self, kind, *arguments, **options):
+        return self.start("rosrun", "soft_tissue_sim", kind, *arguments, **options)
+
+    def process_of(self, node):
+        """Its process id; None while it is not there."""
+        try:
+            api = rosgraph.Master("/world", master_uri=self.uri).lookupNode(node)
+            return xmlrpc.client.ServerProxy(api).getPid("/world")[2]
+        except (OSError, rosgraph.MasterException, xmlrpc.client.Fault):
+            return None
+
+    def address_of(self, node):
+        return rosgraph.Master("/world", master_uri=self.uri).lookupNode(node)
+
+    def hear(self, topic, kind, what, timeout=20):
+        """`what` of the next message `m`."""
+        return self.ask(HEARING.format(topic=topic, kind=kind, what=what, timeout=timeout), timeout)
+
+    def call(self, name, kind, **fields):
+        """Code and sentence of the result."""
+        return self.ask(CALLING.format(name=name, kind=kind, fields=json.dumps(fields)), 120)
+
+    def ask(self, program, timeout):
+        done = subprocess.run([sys.executable, "-c", program], env=self.env, capture_output=True, timeout=timeout + 30)
+        if done.returncode != 0:
+            raise AssertionError(done.stderr.decode()[-500:])
+        return json.loads(done.stdout)
+
+    def end(self):
+        # Launchers end what they have started, and masters are processes of their own.
+        for process in reversed(self.started):
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+                try:
+                    process.wait(10)
+                except subprocess.TimeoutExpired:
+                    pass
+        for process in self.started:
+            if process.poll() is None:
+                try:
+                    os.killpg(process.pid, signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+                process.wait()
+
+
+def log_of(process):
+    with open(process.log, errors="replace") as log:
+        return log.read()
+
+
+def resident_kilobytes(pid):
+    with open(f"/proc/{pid}/status") as status:
+        return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
+
+
+def wait_for(condition, seconds):
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError("what was waited for never came")
+        time.sleep(0.05)
