@@ -51,6 +51,10 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
     if (!outcome.ok()) ROS_WARN("deformer_node: mesh not kept: %s", outcome.sentence.c_str());
   }
 
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("deformer", this, &DeformerNode::diagnose);
+  // Last: in a nodelet they are called at once, by another thread.
+  serve(handle, private_handle);
   const auto every = [&](double rate, void (DeformerNode::*work)()) {
     timers_.push_back(handle.createWallTimer(
         ros::WallDuration(1.0 / rate), [this, work](const ros::WallTimerEvent&) {
@@ -61,8 +65,6 @@ DeformerNode::DeformerNode(ros::NodeHandle handle, ros::NodeHandle private_handl
   if (!parameters.deterministic) every(parameters.cloud_rate, &DeformerNode::publish_clouds);
   every(parameters.marker_rate, &DeformerNode::publish_markers);
   every(parameters.status_rate, &DeformerNode::publish_status);
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("deformer", this, &DeformerNode::diagnose);
 }
 
 void DeformerNode::advertise(ros::NodeHandle handle, ros::NodeHandle private_handle) {
@@ -72,6 +74,9 @@ void DeformerNode::advertise(ros::NodeHandle handle, ros::NodeHandle private_han
   marker_publisher_ = handle.advertise<visualization_msgs::MarkerArray>("deformed_markers", 1);
   probe_publisher_ = private_handle.advertise<soft_tissue_sim::Probes>("probes", queue);
   status_publisher_ = private_handle.advertise<soft_tissue_sim::SimulationStatus>("status", 1);
+}
+
+void DeformerNode::serve(ros::NodeHandle handle, ros::NodeHandle private_handle) {
   mesh_subscriber_ = handle.subscribe<TetMesh>(
       "mesh", 1, [this](const TetMesh::ConstPtr& message) { take_mesh(*message); });
   services_ = {private_handle.advertiseService("load_scene", &DeformerNode::load_scene, this),

@@ -42,6 +42,7 @@ class DeformerNode {
   using Reset = soft_tissue_sim::Reset;
 
   void advertise(ros::NodeHandle handle, ros::NodeHandle private_handle);
+  void serve(ros::NodeHandle handle, ros::NodeHandle private_handle);
   void take_mesh(const TetMesh& message);
   bool load_scene(LoadScene::Request& request, LoadScene::Response& response);
   bool reset(Reset::Request& request, Reset::Response& response);

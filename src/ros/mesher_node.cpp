@@ -32,13 +32,6 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
   density_publisher_ =
       handle.advertise<visualization_msgs::MarkerArray>("mesh_density_markers", 1, true);
 
-  using Volume = soft_tissue_sim::Volume;
-  mask_subscriber_ = handle.subscribe<Volume>(
-      "mask", 1, [this](const Volume::ConstPtr& message) { take_volume(*message, "mask", mask_); });
-  volume_subscriber_ = handle.subscribe<Volume>(
-      "volume", 1,
-      [this](const Volume::ConstPtr& message) { take_volume(*message, "volume", volume_); });
-
   ros::NodeHandle build_handle(private_handle);
   build_handle.setCallbackQueue(&build_queue_);
   services_ = {build_handle.advertiseService("build_mesh", &MesherNode::serve, this),
@@ -48,18 +41,22 @@ MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
       build_handle, "build", [this](const Goal& goal) { take_goal(goal); },
       [this](const Goal& goal) { cancel(goal); }, false);
   action_->start();
-
   if (auto kept = kept_.mesh()) {
     const auto mesh = std::make_shared<const tissue::TetMesh>(std::move(*kept));
     const Outcome outcome = guarded([&] { publish(mesh); });
     has_kept_mesh_ = outcome.ok();
     if (!outcome.ok()) report("kept mesh", outcome);
   }
-
   diagnostics_.setHardwareID("none");
   diagnostics_.add("mesher", this, &MesherNode::diagnose);
   diagnostics_timer_ = handle.createWallTimer(
       ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { diagnostics_.update(); });
+  using Volume = soft_tissue_sim::Volume;
+  mask_subscriber_ = handle.subscribe<Volume>(
+      "mask", 1, [this](const Volume::ConstPtr& message) { take_volume(*message, "mask", mask_); });
+  volume_subscriber_ = handle.subscribe<Volume>(
+      "volume", 1,
+      [this](const Volume::ConstPtr& message) { take_volume(*message, "volume", volume_); });
   for (int i = 0; i < 2; ++i) {
     build_threads_.emplace_back([this] {
       while (!ending_) {

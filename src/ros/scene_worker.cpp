@@ -108,8 +108,18 @@ std::shared_ptr<const SceneWorker::View> SceneWorker::view() {
   return view_;
 }
 
+std::shared_ptr<const SceneWorker::View> SceneWorker::next_view(
+    std::chrono::microseconds patience) {
+  {
+    std::unique_lock<std::mutex> lock(view_mutex_);
+    view_is_wanted_ = true;
+    if (view_came_.wait_for(lock, patience, [this] { return !view_is_wanted_; })) return view_;
+  }
+  return view();
+}
+
 std::shared_ptr<const SceneWorker::View> SceneWorker::view_of_scene() const {
-  return std::make_shared<View>(View{scene_.state(), scene_.probes()});
+  return std::make_shared<View>(View{scene_.state(), scene_.probes(), stamp_});
 }
 
 std::shared_ptr<const SceneWorker::Progress> SceneWorker::progress() const {
@@ -259,6 +269,7 @@ void SceneWorker::tell(const tissue::StepReport& report, double seconds,
   view_ = view_of_scene();
   steps_of_view_ = steps_;
   view_is_wanted_ = false;
+  view_came_.notify_all();
 }
 
 }  // namespace tissue_ros

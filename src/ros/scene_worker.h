@@ -4,6 +4,7 @@
 #include "tissue/simulate/force_loop.h"
 #include "tissue/simulate/playback.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <memory>
@@ -31,6 +32,8 @@ class SceneWorker {
   struct View {
     tissue::State state;
     std::map<std::string, std::optional<tissue::Vec3>> probes;
+    /// Of the newest pose that was used [ns]; 0 before the first.
+    std::int64_t stamp = 0;
   };
 
   /// What the last step left but for where everything is.
@@ -68,6 +71,8 @@ class SceneWorker {
   bool is_paused() const;
   /// Now, or while a step runs as it was before it.
   std::shared_ptr<const View> view();
+  /// What the next step leaves, if it comes within so long; else view().
+  std::shared_ptr<const View> next_view(std::chrono::microseconds patience);
   std::shared_ptr<const Progress> progress() const;
   /// Of steps [s].
   Meter& step_meter() { return step_meter_; }
@@ -105,6 +110,7 @@ class SceneWorker {
   Meter step_meter_;
 
   mutable std::mutex view_mutex_;
+  std::condition_variable view_came_;
   std::shared_ptr<const Progress> progress_;
   std::shared_ptr<const View> view_;
   std::size_t steps_of_view_ = 0;

@@ -69,11 +69,10 @@ Simulation::Simulation(std::shared_ptr<const tissue::TetMesh> mesh,
 }
 
 Simulation::Clouds Simulation::clouds() const {
-  // A step between the two would make the stamp older than the view, never newer.
-  const std::int64_t stamp = worker_->progress()->stamp;
-  const auto view = worker_->view();
+  // Under a tool at the rate of a haptic device a step is always about to end.
+  const auto view = worker_->next_view(std::chrono::milliseconds(2));
   return clouds_of(*mesh_, *levels_, worker_->body(), view->state, view->probes,
-                   stamp == 0 ? ros::Time::now() : time_of(stamp));
+                   view->stamp == 0 ? ros::Time::now() : time_of(view->stamp));
 }
 
 visualization_msgs::MarkerArray Simulation::markers() const {

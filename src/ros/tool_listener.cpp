@@ -99,8 +99,9 @@ void ToolListener::take_pose(const Target& target, std::size_t tool, const Event
       return;
     }
   }
-  put(target, sample);
+  // The hand first: the step that this begins competes with whoever sends the answer.
   if (feels_) answer(target, sample);
+  put(target, sample);
   heard.is_there = true;
   heard.when = ros::WallTime::now();
   heard.stamp = sample.stamp;

@@ -89,9 +89,11 @@ class LatencyProbe : public nodelet::Nodelet {
     cloud_handle_.setCallbackQueue(&cloud_queue_);
     clouds_ = cloud_handle_.subscribe<sensor_msgs::PointCloud2>(
         "deformed_cloud", 2, [this](const sensor_msgs::PointCloud2::ConstPtr& cloud) {
+          const double delay = (ros::Time::now() - cloud->header.stamp).toSec();
           has_cloud_ = true;
+          keeps_pace_ = pushes_ && delay < kPace;
           vertices_ = cloud->width;
-          if (is_counting_) cloud_delays_.add((ros::Time::now() - cloud->header.stamp).toSec());
+          if (is_counting_) cloud_delays_.add(delay);
         });
     spinner_.start();
     cloud_spinner_.start();
@@ -131,10 +133,13 @@ class LatencyProbe : public nodelet::Nodelet {
       poses_.publish(message);
       ++poses;
     };
-    // Until tissue has been touched once, which factorises it.
+    // Until tissue has been touched, which factorises it, and steps have made up for that or never
+    // will.
+    constexpr double kPatience = 60.0;
     every([&](double) {
       if (has_cloud_) move();
-      return !pushes_;
+      return !keeps_pace_ &&
+             !(pushes_ && std::chrono::duration<double>(Clock::now() - begin).count() > kPatience);
     });
     threads_.emplace_back([this] {
       every([this](double late) {
@@ -195,11 +200,14 @@ class LatencyProbe : public nodelet::Nodelet {
     row("idle_twin", twin_delays_);
   }
 
+  // Clouds that are not older [s] keep pace with poses.
+  static constexpr double kPace = 0.05;
+
   double rate_ = 0.0, seconds_ = 0.0;
   std::string name_, csv_;
   std::vector<tissue::StampedPose> path_;
   std::atomic<bool> is_over_{false}, is_done_{false}, is_counting_{false}, has_cloud_{false},
-      pushes_{false};
+      pushes_{false}, keeps_pace_{false};
   std::atomic<std::uint32_t> vertices_{0};
   Delays force_delays_, cloud_delays_, twin_delays_;
   ros::CallbackQueue queue_, cloud_queue_;
