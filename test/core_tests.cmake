@@ -39,3 +39,16 @@ tissue_test(test_tools LIBRARIES tissue_test_support SOURCES
   tools/accuracy_study_test.cpp tools/mesh_volume_test.cpp tools/run_scene_test.cpp)
 target_compile_definitions(test_tools PRIVATE
   ACCURACY_STUDY="$<TARGET_FILE:accuracy_study>" MESH_VOLUME="$<TARGET_FILE:mesh_volume>" RUN_SCENE="$<TARGET_FILE:run_scene>")
+tissue_test(test_fuzz_corpus LIBRARIES tissue_field tissue_mesh_file tissue_simulate SOURCES
+  fuzz/corpus_test.cpp fuzz/targets.cpp)
+
+# scripts/fuzz sets the sanitizers of everything; this adds libFuzzer's main function.
+option(TISSUE_FUZZ "Build the fuzzer, with clang" OFF)
+if(TISSUE_FUZZ)
+  # Without ITK, whose headers refuse clang here.
+  add_executable(fuzz fuzz/fuzz.cpp fuzz/targets.cpp ${CMAKE_SOURCE_DIR}/src/tissue/field/volume.cpp)
+  target_include_directories(fuzz PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(fuzz tissue_mesh_file tissue_simulate)
+  target_link_options(fuzz PRIVATE -fsanitize=fuzzer)
+  set_target_properties(fuzz PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+endif()

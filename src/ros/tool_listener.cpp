@@ -118,7 +118,8 @@ void ToolListener::take_state(const Target& target, std::size_t tool, const Even
 
 void ToolListener::put(const Target& target, const tissue::ToolSample& sample) {
   if (target.worker->put(sample)) return;
-  drop("the replay is so far behind that a pose is lost");
+  ++dropped_;
+  ROS_ERROR_THROTTLE(1.0, "deformer_node: the replay is so far behind that poses are lost");
 }
 
 void ToolListener::answer(const Target& target, const tissue::ToolSample& sample) {

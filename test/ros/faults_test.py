@@ -183,6 +183,16 @@ class Faults(unittest.TestCase):
         self.assertEqual(lost.wait(30), 1)
         self.assertIn("no master answers at http://127.0.0.1:1", log_of(lost))
 
+    def test_5_X3_a_parameter_that_makes_no_sense_ends_the_node_with_its_name_and_value(self):
+        for argument, sentence in (("_cloud_rate:=.nan", "~cloud_rate: .nan is not finite"),
+                                   ("_max_force:=-1", "~max_force: -1 is not between"),
+                                   ("_tool_timeout:=soon", "~tool_timeout: soon is not a number"),
+                                   ("/nowhere.yaml", "settings: '/nowhere.yaml'")):
+            node = self.world.node("deformer_node", "__name:=wrong", argument)
+            self.assertEqual(node.wait(20), 1, argument)
+            self.assertIn(sentence, log_of(node))
+            subprocess.run(["rosparam", "delete", "/wrong"], env=self.world.env, capture_output=True)
+
     def test_5_F8_X2_where_memory_ends_the_request_fails_and_the_node_serves(self):
         limited = self.world.start("bash", "-c", "ulimit -v 1500000; exec rosrun soft_tissue_sim mesher_node "
                                    "__name:=limited mesh:=/other_mesh _max_tetrahedra:=1000000000")

@@ -97,6 +97,22 @@ class Press(DeformerCase):
             other.terminate()
             other.wait()
 
+    def test_5_P4_P7_a_tool_that_jumps_a_metre_through_the_ball_folds_nothing_and_leaves_it_at_rest(self):
+        self.press_and_be_felt()
+        flags, inverted = [], []
+        rospy.Subscriber("deformer_node/status", SimulationStatus,
+                         lambda status: (flags.extend(status.flags), inverted.append(status.inverted)))
+        # To the far side within one pose: what cannot be followed is said, and nothing is torn along.
+        Press.places = {"finger": (CENTRE_M, CENTRE_M, CENTRE_M - 1.0)}
+        self.reach(lambda: self.status() and "CLAMPED" in flags or self.largest() < 1e-5)
+        self.reach(lambda: self.largest() < 1e-5)
+        self.assertEqual(max(inverted), 0)
+        self.assertEqual((self.felt.x, self.felt.y, self.felt.z), (0.0, 0.0, 0.0))
+        # Taken away and brought back it presses as before.
+        Press.places = {}
+        self.reach(lambda: "TOOL_LOST" in self.status().flags)
+        self.press_and_be_felt()
+
 
 if __name__ == "__main__":
     rostest.rosrun("soft_tissue_sim", "press", Press)

@@ -3,6 +3,7 @@
 #include "tissue/simulate/scene.h"
 
 #include <functional>
+#include <istream>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct StampedPose {
 /// file, line and value: numbers must be finite, the quaternion's norm within 0.9 to 1.1, times
 /// must not fall.
 std::vector<StampedPose> read_poses(const std::string& path);
+/// The same of any lines, which errors name `path`.
+std::vector<StampedPose> parse_poses(std::istream& lines, const std::string& path);
 
 /// Where a path is at a time, between its poses along a straight line and the shortest turn; before
 /// its first and after its last pose there. Its grip is that of the pose before. `path` must not be

@@ -48,11 +48,16 @@ class Line {
 std::vector<StampedPose> read_poses(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw InputError(ErrorCode::kFile, "path: '" + path + "' cannot be read");
+  return parse_poses(file, path);
+}
+
+std::vector<StampedPose> parse_poses(std::istream& lines, const std::string& path) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
   std::vector<StampedPose> poses;
   std::string text;
-  for (int number = 1; std::getline(file, text); ++number) {
+  for (int number = 1; std::getline(lines, text); ++number) {
     const Line line(path, number);
-    if (text.empty() || text == "\r" || (number == 1 && std::isalpha(text[0]) != 0)) continue;
+    if (text.empty() || text == "\r" || (number == 1 && is_letter(text[0]))) continue;
     const std::vector<double> v = line.numbers(text);
     const Eigen::Quaterniond turn(v[7], v[4], v[5], v[6]);
     if (!(turn.norm() > 0.9 && turn.norm() < 1.1)) {

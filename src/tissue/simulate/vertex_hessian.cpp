@@ -10,7 +10,17 @@ namespace tissue {
 namespace {
 
 using Four = float __attribute__((vector_size(16)));
-using FourPlaces = int __attribute__((vector_size(16)));
+
+// The numbers at these places of the eight in `a` and `b`.
+template <int i, int j, int k, int l>
+Four picked(Four a, Four b) {
+#ifdef __clang__
+  return __builtin_shufflevector(a, b, i, j, k, l);
+#else
+  using Places = int __attribute__((vector_size(16)));
+  return __builtin_shuffle(a, b, Places{i, j, k, l});
+#endif
+}
 
 constexpr std::size_t kPairs = 6;
 // Numbers of an element's blocks, made up to whole registers.
@@ -20,14 +30,12 @@ constexpr std::size_t kStride = 56;
 inline void turn(const Lanes* const (&from)[4], float* to) {
   Four in[4];
   for (int i = 0; i < 4; ++i) in[i] = __builtin_convertvector(*from[i], Four);
-  const Four low_01 = __builtin_shuffle(in[0], in[1], FourPlaces{0, 4, 1, 5});
-  const Four high_01 = __builtin_shuffle(in[0], in[1], FourPlaces{2, 6, 3, 7});
-  const Four low_23 = __builtin_shuffle(in[2], in[3], FourPlaces{0, 4, 1, 5});
-  const Four high_23 = __builtin_shuffle(in[2], in[3], FourPlaces{2, 6, 3, 7});
-  const Four out[4] = {__builtin_shuffle(low_01, low_23, FourPlaces{0, 1, 4, 5}),
-                       __builtin_shuffle(low_01, low_23, FourPlaces{2, 3, 6, 7}),
-                       __builtin_shuffle(high_01, high_23, FourPlaces{0, 1, 4, 5}),
-                       __builtin_shuffle(high_01, high_23, FourPlaces{2, 3, 6, 7})};
+  const Four low_01 = picked<0, 4, 1, 5>(in[0], in[1]);
+  const Four high_01 = picked<2, 6, 3, 7>(in[0], in[1]);
+  const Four low_23 = picked<0, 4, 1, 5>(in[2], in[3]);
+  const Four high_23 = picked<2, 6, 3, 7>(in[2], in[3]);
+  const Four out[4] = {picked<0, 1, 4, 5>(low_01, low_23), picked<2, 3, 6, 7>(low_01, low_23),
+                       picked<0, 1, 4, 5>(high_01, high_23), picked<2, 3, 6, 7>(high_01, high_23)};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     std::memcpy(to + lane * kStride, &out[lane], sizeof(Four));
   }
