@@ -34,14 +34,15 @@ class Bytes {
   T take() {
     T value{};
     const std::size_t count = std::min(sizeof(T), size_);
-    std::memcpy(&value, data_, count);
+    if (count > 0) std::memcpy(&value, data_, count);
     skip(count);
     return value;
   }
   template <class T>
   std::vector<T> take_all(std::size_t most) {
     std::vector<T> values(std::min(most, size_ / sizeof(T)));
-    std::memcpy(static_cast<void*>(values.data()), data_, values.size() * sizeof(T));
+    const std::size_t size = values.size() * sizeof(T);
+    if (size > 0) std::memcpy(static_cast<void*>(values.data()), data_, size);
     skip(values.size() * sizeof(T));
     return values;
   }

@@ -169,7 +169,7 @@ class QuadraticSystem : public LinearSystem {
           for_entries([&](int r, int c) { own[a][r][c] += share * pairs.of[a][a][r][c]; });
         }
         for (int e = 0; e < 6; ++e) {
-          const auto [a, b] = kTetEdges[e];
+          const auto a = kTetEdges[e][0], b = kTetEdges[e][1];
           const double aa = 16.0 * place[b] * place[b], bb = 16.0 * place[a] * place[a],
                        ab = 16.0 * place[a] * place[b];
           for_entries([&](int r, int c) {
