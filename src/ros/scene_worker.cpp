@@ -156,12 +156,23 @@ void SceneWorker::run() {
         follow(inbox);
       }
     });
-    if (!outcome.ok() && on_error_) on_error_(outcome.sentence);
+    if (!outcome.ok()) {
+      feel_nothing();
+      if (on_error_) on_error_(outcome.sentence);
+    }
     if (!inbox.has_reset) continue;
     const std::lock_guard<std::mutex> inbox_lock(inbox_mutex_);
     ++resets_;
     was_reset_.notify_all();
   }
+}
+
+// What steps found before one failed is no guide for a hand.
+void SceneWorker::feel_nothing() {
+  const std::lock_guard<std::mutex> lock(view_mutex_);
+  auto progress = std::make_shared<Progress>(*progress_);
+  progress->tissue.assign(progress->tissue.size(), std::nullopt);
+  progress_ = std::move(progress);
 }
 
 void SceneWorker::start_playback() {

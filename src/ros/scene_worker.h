@@ -86,6 +86,7 @@ class SceneWorker {
 
   void run();
   Inbox next_inbox();
+  void feel_nothing();
   void start_playback();
   void start_again();
   void replay(const Inbox& inbox);
