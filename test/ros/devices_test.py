@@ -161,12 +161,16 @@ class Devices(DeformerCase):
                     stamp = begin + rospy.Duration(i / RATE)
                     for topic, message in messages(i / RATE, stamp):
                         bag.write(topic, message, stamp)
-            subprocess.run(["rosbag", "play", "-q", "--wait-for-subscribers", path], check=True, timeout=60)
+            # A player that stalls for longer than the tools' time-out loses their grip: it plays again.
+            for _ in range(5):
+                subprocess.run(["rosbag", "play", "-q", "--wait-for-subscribers", path], check=True, timeout=60)
+                if min(moved.values()) > 0.001:
+                    break
         for device in self.DEVICES:
-            self.assertGreater(moved[device], 0.001, device)
-            self.assertLess(moved[device], 0.003, device)
+            self.assertGreater(moved[device], 0.001, moved)
+            self.assertLess(moved[device], 0.003, moved)
         for topic, forces in felt.items():
-            self.wait_for_all(lambda: self.force_of(forces[-1]).z == 0.0)
+            self.wait_for_all(lambda: forces and self.force_of(forces[-1]).z == 0.0)
             # A tool that presses is pushed up; one that pulls is pulled down.
             strongest = max((self.force_of(f).z for f in forces), key=abs)
             self.assertGreater(strongest if topic != "/sigma/servo_cf" else -strongest, 1e-3, topic)
