@@ -246,6 +246,7 @@ soft_tissue_sim::SimulationStatus to_message(const tissue::SceneDescription& sce
   if (last_step.clamped) status.flags.push_back("CLAMPED");
   if (last_step.tool_inside) status.flags.push_back("TOOL_INSIDE");
   if (last_step.not_converged) status.flags.push_back("NOT_CONVERGED");
+  if (last_step.folded) status.flags.push_back("FOLDED");
   return status;
 }
 

@@ -70,7 +70,8 @@ geometry_msgs::PoseStamped in_frame(const geometry_msgs::PoseStamped& pose,
   const std::string& source = pose.header.frame_id;
   if (source == frame) return pose;
   if (source.empty()) refuse(topic, ErrorCode::kFrame, "header.frame_id is empty");
-  if (source.size() > kMaxNameLength) refuse(topic, ErrorCode::kFrame, "header.frame_id is too long");
+  if (source.size() > kMaxNameLength)
+    refuse(topic, ErrorCode::kFrame, "header.frame_id is too long");
   if (transforms == nullptr) {
     refuse(topic, ErrorCode::kFrame, "frame '" + source + "' is not the mesh's, '" + frame + "'");
   }
@@ -113,6 +114,10 @@ tissue::ToolSample DeviceReader::pose(const AnyMessage& message) const {
   pose = in_frame(pose, frame_, transforms_, topic);
   tissue::ToolPose place;
   place.position = tissue::Vec3(p.x, p.y, p.z);
+  if (!(place.position.cwiseAbs().maxCoeff() <= tissue::kFarthestTool)) {
+    refuse(topic, ErrorCode::kParam,
+           "position is farther than " + tissue::to_text(tissue::kFarthestTool) + " m away");
+  }
   place.orientation = Eigen::Quaterniond(q.w, q.x, q.y, q.z);
   return {number_, stamp, place};
 }

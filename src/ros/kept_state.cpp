@@ -49,6 +49,7 @@ std::string state_folder(const std::string& named) {
 KeptState::KeptState(const std::string& folder, const std::string& name) {
   if (name.empty()) return;
   const std::string below = state_folder(folder);
+  tissue::remove_unfinished(below);
   mesh_file_ = tissue::confined_path(below, name + ".vtu", false);
   scene_file_ = tissue::confined_path(below, name + ".yaml", false);
   writer_ = std::thread([this] { write_all(); });

@@ -114,6 +114,7 @@ nlohmann::json figures(const tissue::Scene& scene, const tissue::RunRecord& reco
     reactions["anchors[" + std::to_string(i) + "]"] = triple(anchors[i]);
   }
   if (record.not_converged > 0) flags.push_back("NOT_CONVERGED");
+  if (record.folded) flags.push_back("FOLDED");
   if (record.clamped) flags.push_back("CLAMPED");
   if (record.tool_inside) flags.push_back("TOOL_INSIDE");
   return {{"scene", scene.description().name},

@@ -61,6 +61,23 @@ TEST_F(SafePath, M11_RefusesEveryWayOut) {
     }
   }
   EXPECT_EQ(refusal([&] { confined_path(folder(), "absent.vtu", true); }).substr(0, 6), "E_PATH");
+  // The sentence says which, though others would refuse it too.
+  const auto says = [&](const std::string& name, const char* what) {
+    return refusal([&] { confined_path(folder(), name, false); }).find(what) != std::string::npos;
+  };
+  EXPECT_TRUE(says((base_ / "meshes" / "here.vtu").string(), "is absolute"));
+  EXPECT_TRUE(says("patients/../here.vtu", "leads upwards"));
+}
+
+TEST_F(SafePath, F1_WhatAWriterThatWasKilledLeftIsRemovedAndWhatALiveOneWritesIsNot) {
+  std::ofstream(base_ / "meshes" / "old.part999999999.vtu") << "half";
+  std::ofstream(base_ / "meshes" / "chapter.partition.vtu") << "whole";
+  AtomicFile file(folder() + "/new.vtu");
+  std::ofstream(file.temporary()) << "whole";
+  remove_unfinished(folder());
+  EXPECT_FALSE(fs::exists(base_ / "meshes" / "old.part999999999.vtu"));
+  EXPECT_TRUE(fs::exists(base_ / "meshes" / "chapter.partition.vtu"));
+  EXPECT_TRUE(fs::exists(file.temporary()));
 }
 
 TEST_F(SafePath, AFileAppearsWhenItIsCompleteAndNotBefore) {

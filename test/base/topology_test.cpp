@@ -1,5 +1,6 @@
 #include "tissue/base/topology.h"
 
+#include "support/mesh_checks.h"
 #include "tissue/base/quality.h"
 #include "tissue/base/tet_shape.h"
 
@@ -22,6 +23,13 @@ TEST(FaceTopology, JoinsTetsAtTheirCommonFace) {
   EXPECT_EQ(common, faces.tet_faces[1][3]);
   EXPECT_EQ(faces.face_tets[common], (std::array<std::uint32_t, 2>{0, 1}));
   EXPECT_EQ(faces.face_tets[faces.tet_faces[0][1]][1], kNoTet);
+}
+
+TEST(FaceTopology, S6_RefusesAThirdTetAtAFace) {
+  const std::string text = tissue_test::refusal([] {
+    face_topology({{0, 1, 2, 3}, {3, 2, 1, 4}, {1, 2, 3, 5}}, 6);
+  });
+  EXPECT_EQ(text, "E_CONFORMITY: face_topology: tet 2 is the third at face 1 2 3");
 }
 
 TEST(EdgeTopology, GivesCommonEdgesOneNumber) {

@@ -56,6 +56,9 @@ TEST(DeviceReader, P1_P2_NamesWhatIsWrongWithAPose) {
   pose.pose.position.y = HUGE_VAL;
   EXPECT_EQ(refusal([&] { reader().pose(any(pose)); }),
             "E_NONFINITE: arm/measured_cp: position is not finite");
+  pose.pose.position.y = 1e200;
+  EXPECT_EQ(refusal([&] { reader().pose(any(pose)); }),
+            "E_PARAM: arm/measured_cp: position is farther than 1e+06 m away");
   for (const double w : {0.0, 0.89, 1.11, std::nan("")}) {
     pose = sound_pose();
     pose.pose.orientation.w = w;
@@ -83,11 +86,13 @@ TEST(DeviceReader, P6_WaitsForNoTransform) {
   EXPECT_NO_THROW(reader("", &empty).pose(any(pose)));
   pose.header.frame_id = "/patient";
   EXPECT_NO_THROW(reader("", &empty).pose(any(pose)));
-  for (const std::string frame : {"nowhere", ""}) {
+  for (const std::string& frame : {std::string("nowhere"), std::string(), std::string(300, 'x')}) {
     pose.header.frame_id = frame;
     EXPECT_EQ(refusal([&] { reader("", &empty).pose(any(pose)); }).substr(0, 7), "E_FRAME");
     EXPECT_EQ(refusal([&] { reader().pose(any(pose)); }).substr(0, 7), "E_FRAME");
   }
+  // What a log is told of it stays short.
+  EXPECT_LT(refusal([&] { reader("", &empty).pose(any(pose)); }).size(), 200u);
 }
 
 // Geomagic_Touch_ROS_Drivers name the frame /map, ros_geomagic speaks millimetres in `world`.

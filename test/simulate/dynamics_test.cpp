@@ -162,6 +162,26 @@ void jerk(const std::shared_ptr<const Body>& body, const std::string& model, dou
   }
 }
 
+TEST(Dynamics, S7_AStepThatOverflowsSaysSoAndKeepsTheLastState) {
+  const Vec3 end(0.2, 0.05, 0.05);
+  for (const char* model : kModels) {
+    Scene scene(scene_of(model, "[inertia, damping]", kClamped + kGrasp), beam(2));
+    scene.step(ToolPose{end, true}, 0.01);
+    scene.step(ToolPose{end + Vec3(0.0, 0.01, 0.0), true}, 0.01);
+    const std::vector<Vec3> before = scene.state().positions;
+    // Masses over squares of such a time are no numbers.
+    EXPECT_TRUE(scene.step(ToolPose{end, true}, 1e-200).not_converged) << model;
+    EXPECT_EQ(scene.state().positions, before) << model;
+    EXPECT_EQ(refusal([&] {
+                scene.step(ToolPose{end * 1e200, true}, 0.01);
+              }),
+              "E_PARAM: pose: that of tool tool is farther than 1e+06 m away");
+    EXPECT_EQ(scene.state().positions, before) << model;
+    EXPECT_FALSE(scene.step(ToolPose{end, true}, 0.01).not_converged) << model;
+    for (const Vec3& place : scene.state().positions) EXPECT_LE(place.norm(), 1.0) << model;
+  }
+}
+
 TEST(Dynamics, S2_S3_T8_RefinedMeshesWithATumourStayFiniteInLargeSteps) {
   const auto body = std::make_shared<Body>(
       tissue_test::ball_body(tissue_test::refined_ball(0.020, 2), 0.012, 255.0f, 60.0f));

@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 namespace {
 
@@ -158,10 +159,46 @@ TEST(SolidScene, S3_S7_WhatIsNotFiniteIsRefusedAndTheStateStays) {
   EXPECT_EQ(refusal([&] { scene.step(ToolPoses{}, 0.0); }).substr(0, 7), "E_PARAM");
   EXPECT_EQ(scene.state().positions, before);
   // A tool that flies away takes the tissue with it or is not followed; nothing gets lost.
-  const StepReport report = scene.step(ToolPose{kEnd + Vec3(1e6, 0, 0), true}, 0.01);
+  const StepReport report = scene.step(ToolPose{kEnd + Vec3(9e5, 0, 0), true}, 0.01);
   for (const Vec3& place : scene.state().positions) EXPECT_TRUE(place.allFinite());
   if (report.not_converged) {
     EXPECT_EQ(scene.state().positions, before);
+  }
+}
+
+TEST(SolidScene, ScenesInTwoThreadsFindWhatTheyFindAlone) {
+  const auto last_positions = [] {
+    Scene scene(scene_of("linear"), block(8));
+    for (int i = 0; i < 12; ++i) {
+      const Vec3 aside(0.0, 0.001 * (i / 3), 0.0);
+      scene.step(ToolPose{kEnd + aside, i % 3 != 2}, 0.0);
+    }
+    scene.step(ToolPose{kEnd, true}, 0.0);
+    scene.step(ToolPose{kEnd + Vec3(0.004, 0.0, 0.0), true}, 0.0);
+    return scene.state().positions;
+  };
+  const std::vector<Vec3> alone = last_positions();
+  for (int i = 0; i < 3; ++i) {
+    std::vector<Vec3> one, other;
+    std::thread thread([&] { one = last_positions(); });
+    other = last_positions();
+    thread.join();
+    EXPECT_EQ(one, alone);
+    EXPECT_EQ(other, alone);
+  }
+}
+
+TEST(SolidScene, WhereTissueFoldsTheStepSaysSo) {
+  for (const char* model : {"corotational", "neo_hookean"}) {
+    for (const char* effects : {"[]", "[inertia]"}) {
+      Scene scene(scene_of(model, "", effects), block());
+      EXPECT_FALSE(scene.step(ToolPose{kEnd, true}, 0.01).folded) << model << effects;
+      EXPECT_FALSE(scene.step(ToolPose{kEnd + Vec3(0.002, 0, 0), true}, 0.01).folded) << model;
+      // The end is pushed through the middle.
+      const StepReport report = scene.step(ToolPose{kEnd - Vec3(0.05, 0, 0), true}, 0.01);
+      EXPECT_GT(deformation_quality(scene.body(), scene.state()).inverted, 0u) << model << effects;
+      EXPECT_TRUE(report.folded) << model << effects;
+    }
   }
 }
 

@@ -27,4 +27,8 @@ class AtomicFile {
   std::string path_, temporary_;
 };
 
+/// Removes what writers in this folder left unfinished when they were killed: temporaries of
+/// processes that are no more.
+void remove_unfinished(const std::string& folder);
+
 }  // namespace tissue

@@ -11,7 +11,7 @@ struct RunRecord {
   /// Wall clock, of every step.
   std::vector<double> seconds;
   std::size_t not_converged = 0;
-  bool clamped = false, tool_inside = false;
+  bool clamped = false, folded = false, tool_inside = false;
   /// Deepest of all steps [m].
   double penetration = 0.0;
   /// Of the last step.

@@ -66,6 +66,8 @@ EquilibriumReport Dynamics::advance(Equilibrium& equilibrium, ToolActions& actio
     report.iterations += one.iterations;
     report.residual = std::max(report.residual, one.residual);
   }
+  // A tool that moved in no time, for one, leaves velocities that no later step can do with.
+  report.converged = report.converged && std::isfinite(potential_energy() + kinetic_energy());
   if (!report.converged) {
     positions = positions_before;
     velocities_ = velocities_before;

@@ -7,12 +7,17 @@
 #include <Eigen/CholmodSupport>
 #endif
 
+#include <mutex>
 #include <new>
 
 namespace tissue {
 namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
+
+// OpenBLAS without threads, which keeps the bits, has buffers that all callers in a process share:
+// called from two threads at once it finds wrong numbers.
+std::mutex blas_mutex;
 
 // The order of elimination is found once for a pattern, which a matrix's blocks and what is fixed
 // in it decide.
@@ -41,6 +46,7 @@ class Direct : public LinearSolver {
       entries_ = lower.nonZeros();
       fixed_ = fixed;
     }
+    const std::lock_guard<std::mutex> lock(blas_mutex);
     decomposition_.factorize(lower);
     return decomposition_.info() == Eigen::Success && is_definite();
   }
@@ -52,7 +58,10 @@ class Direct : public LinearSolver {
     for (std::size_t i = 0; i < number_.size(); ++i) {
       if (number_[i] >= 0) free[number_[i]] = b[static_cast<Eigen::Index>(i)];
     }
-    const Eigen::VectorXd found = decomposition_.solve(free);
+    const Eigen::VectorXd found = [&]() -> Eigen::VectorXd {
+      const std::lock_guard<std::mutex> lock(blas_mutex);
+      return decomposition_.solve(free);
+    }();
     for (std::size_t i = 0; i < number_.size(); ++i) {
       if (number_[i] >= 0) x[static_cast<Eigen::Index>(i)] = found[number_[i]];
     }

@@ -11,8 +11,14 @@ namespace tissue {
 namespace {
 
 void check_pose(const ToolDescription& tool, const ToolPose& pose) {
-  if (pose.position.allFinite() && pose.orientation.coeffs().allFinite()) return;
-  throw InputError(ErrorCode::kNonfinite, "pose: that of tool " + tool.name + " is not finite");
+  const std::string of_tool = "pose: that of tool " + tool.name;
+  if (!pose.position.allFinite() || !pose.orientation.coeffs().allFinite()) {
+    throw InputError(ErrorCode::kNonfinite, of_tool + " is not finite");
+  }
+  if (pose.position.cwiseAbs().maxCoeff() > kFarthestTool) {
+    throw InputError(ErrorCode::kParam,
+                     of_tool + " is farther than " + to_text(kFarthestTool) + " m away");
+  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ void RunRecord::add(const StepReport& step, double wall_seconds) {
   seconds.push_back(wall_seconds);
   not_converged += step.not_converged;
   clamped = clamped || step.clamped;
+  folded = folded || step.folded;
   tool_inside = tool_inside || step.tool_inside;
   penetration = std::max(penetration, step.penetration);
 }

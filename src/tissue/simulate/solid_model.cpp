@@ -3,6 +3,7 @@
 #include "tool_response.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace tissue {
@@ -172,7 +173,8 @@ class SolidModel : public DeformationModel {
     report_.residual = found.residual;
     report_.solver = equilibrium_.solver_name();
     report_.energy = found.energy;
-    return found.converged && positions_.allFinite() && actions_.accepts(positions_);
+    return found.converged && std::isfinite(found.energy) && positions_.allFinite() &&
+           actions_.accepts(positions_);
   }
 
   void finish(const ToolPoses& tools, bool is_superposed) {
@@ -200,6 +202,10 @@ class SolidModel : public DeformationModel {
       state_.positions[v] = positions_.segment<3>(i);
       report_.moved_vertices += state_.positions[v] != Vec3(rest_.segment<3>(i));
     }
+    report_.folded = std::any_of(body_.tets.begin(), body_.tets.end(), [&](const Tet& tet) {
+      const std::vector<Vec3>& at = state_.positions;
+      return !(determinant(at[tet[0]], at[tet[1]], at[tet[2]], at[tet[3]]) > 0.0);
+    });
   }
 
   const SceneDescription& scene_;
