@@ -6,6 +6,8 @@
 #include "tissue/base/safe_path.h"
 #include "tissue/simulate/scene_file.h"
 
+#include <malloc.h>
+
 #include <utility>
 
 namespace tissue_ros {
@@ -120,6 +122,8 @@ std::unique_ptr<Simulation> DeformerNode::simulation_of(std::shared_ptr<const ti
 void DeformerNode::begin(std::unique_ptr<Simulation> simulation) {
   tools_->set_worker(simulation->worker(), simulation->mesh()->frame_id);
   simulation_ = std::move(simulation);
+  // The factors of the last mesh lay in the arenas of threads that have ended.
+  malloc_trim(0);
   time_jumps_told_ = 0;
   markers_are_new_ = true;
   ROS_INFO("deformer_node: mesh %s of %zu tets moves as scene '%s' says",

@@ -1,5 +1,6 @@
 #include "tissue/refine/build_mesh.h"
 
+#include "support/figures.h"
 #include "support/mesh_checks.h"
 #include "support/shapes.h"
 #include "tissue/field/edit_volume.h"
@@ -254,6 +255,7 @@ TEST(BuildMesh, V10_MeshesAnAnisotropicBallAtItsTrueSize) {
   // Trilinear interpolation over 4 mm cuts a 20 mm ball short by up to h²/(8 r) = 0.1 mm in depth.
   const double ball = 4.0 / 3.0 * M_PI * 8e-6;
   EXPECT_NEAR(mesh.statistics.volume, ball, 0.05 * ball);
+  tissue_test::figure("error of the volume", std::abs(mesh.statistics.volume / ball - 1.0));
 }
 
 }  // namespace

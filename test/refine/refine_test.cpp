@@ -1,5 +1,6 @@
 #include "tissue/refine/refine.h"
 
+#include "support/figures.h"
 #include "support/mesh_checks.h"
 #include "support/shapes.h"
 #include "tissue/base/tet_mesh.h"
@@ -68,6 +69,8 @@ TEST(Refine, T15_KeepsAnglesFromTheFirstLevelOn) {
   const DihedralRange first = range(1);
   for (std::uint8_t level = 2; level < 5; ++level) {
     EXPECT_NEAR(range(level).min_angle(), first.min_angle(), 1e-9);
+    tissue_test::figure("change of the smallest angle [deg]",
+                        std::abs(range(level).min_angle() - first.min_angle()));
     EXPECT_NEAR(range(level).max_angle(), first.max_angle(), 1e-9);
   }
 }

@@ -15,7 +15,7 @@ from sensor_msgs.msg import PointCloud2
 from soft_tissue_sim.msg import Result, SimulationStatus, TetMesh, Volume
 from soft_tissue_sim.srv import MeshFile
 
-from ros_world import World, wait_for
+from ros_world import World, figure, wait_for
 
 NODES = ("/volume_node", "/mesher_node", "/deformer_node")
 SAVED = "saved.vtu"
@@ -98,6 +98,7 @@ class Kills(unittest.TestCase):
               + ", ".join(f"{longest[node]:.2f} s ({node[1:]})" for node in NODES)
               + f"; {self.clouds} clouds, none broken; {self.saved} meshes saved, each that was there could be loaded",
               flush=True)
+        figure("F1", f"serves again after at most [s], {kills} kills of each node", round(max(longest.values()), 2))
         self.assertGreater(self.clouds, 0)
         self.assertGreater(self.saved, 0)
 

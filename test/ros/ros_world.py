@@ -31,6 +31,41 @@ print(json.dumps([answer.result.code, answer.result.message]))
 """
 
 
+# Volumes and meshes of claims that are not true.
+HOSTILE = """
+import json, math, random, rospy
+from soft_tissue_sim.msg import TetMesh, Volume
+rospy.init_node("enemy", anonymous=True, disable_signals=True, disable_rosout=True)
+random.seed(1)
+volumes = rospy.Publisher("/volume", Volume, queue_size=1000)
+meshes = rospy.Publisher("/mesh", TetMesh, queue_size=1000)
+while volumes.get_num_connections() == 0 or meshes.get_num_connections() == 0:
+    rospy.rostime.wallsleep(0.05)
+size = lambda: random.choice((0, 1, 2, 31, 65536, 2**31, 2**32 - 1))
+number = lambda: random.choice((0.0, -1.0, 1e-3, 3e38, math.nan, math.inf))
+for i in range({count}):
+    volume, mesh = Volume(), TetMesh()
+    volume.header.frame_id = mesh.header.frame_id = random.choice(("patient", "", "x" * 100000))
+    volume.width, volume.height, volume.depth = size(), size(), size()
+    volume.spacing.x, volume.spacing.y, volume.spacing.z = number(), number(), number()
+    volume.origin.orientation.w = random.choice((1.0, number()))
+    volume.encoding = random.choice(("8UC1", "64FC1", "", "%s%n" * 1000))
+    volume.data = bytes(random.randrange(1000))
+    count = random.randrange(30)
+    mesh.vertices = [number() for _ in range(3 * count)]
+    mesh.tetrahedra = [random.choice((0, 1, 2, 2**32 - 1)) for _ in range(random.randrange(40))]
+    mesh.levels = bytes(random.randrange(10))
+    mesh.densities = [number() for _ in range(random.choice((0, count)))]
+    mesh.tet_densities = [number() for _ in range(random.randrange(10))]
+    mesh.surface, mesh.parents = mesh.tetrahedra, mesh.tetrahedra
+    mesh.lattice_vertices = size()
+    volumes.publish(volume)
+    meshes.publish(mesh)
+    rospy.rostime.wallsleep(0.002)
+print(json.dumps({count}))
+"""
+
+
 class World:
     def __init__(self):
         self.folder = tempfile.mkdtemp()
@@ -90,6 +125,10 @@ class World:
         """Code and sentence of the result."""
         return self.ask(CALLING.format(name=name, kind=kind, fields=json.dumps(fields)), 120)
 
+    def attack(self, count):
+        """So many hostile volumes and meshes."""
+        return self.ask(HOSTILE.format(count=count), 120)
+
     def ask(self, program, timeout):
         done = subprocess.run([sys.executable, "-c", program], env=self.env, capture_output=True, timeout=timeout + 30)
         if done.returncode != 0:
@@ -122,6 +161,13 @@ def log_of(process):
 def resident_kilobytes(pid):
     with open(f"/proc/{pid}/status") as status:
         return next(int(line.split()[1]) for line in status if line.startswith("VmRSS"))
+
+
+def figure(case, what, value):
+    """Keeps what a test measured of a hard case where scripts/robustness finds it."""
+    if "TISSUE_FIGURES" in os.environ:
+        with open(os.environ["TISSUE_FIGURES"], "a") as file:
+            print(json.dumps([case, what, value]), file=file)
 
 
 def wait_for(condition, seconds):

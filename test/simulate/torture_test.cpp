@@ -1,5 +1,6 @@
 // Shapes that no tissue ever has, contrasts and ratios that no solver likes.
 #include "support/bodies.h"
+#include "support/figures.h"
 #include "support/problem.h"
 #include "tissue/simulate/scene_file.h"
 
@@ -103,6 +104,7 @@ void expect_rest(const Recovery& found, double error) {
   EXPECT_TRUE(found.energy_fell);
   EXPECT_LE(found.error, error);
   if (error < kAnywhere) {
+    tissue_test::figure("farthest from rest, by the size", found.error);
     EXPECT_EQ(found.inverted, 0u);
   }
 }
@@ -168,6 +170,7 @@ TEST(Torture, T13_LinearSolvesHoldTheirResidual) {
           const EquilibriumReport report = equilibrium.solve(problem.positions, {1e-6, 5});
           EXPECT_TRUE(report.converged) << report.residual;
           EXPECT_LE(report.residual, 1e-6);
+          tissue_test::figure("residual", report.residual);
         }
       }
     }
@@ -216,6 +219,9 @@ TEST(Torture, T17_LinearTetsLockAndTheirExcessIsMeasured) {
         poisson, linear.force / finer.force, averaged.force / finer.force,
         quadratic.force / finer.force, linear.volume_lost, averaged.volume_lost,
         quadratic.volume_lost);
+    const std::string at = " at " + std::to_string(poisson);
+    tissue_test::figure("force of linear tets, by the right one," + at, linear.force / finer.force);
+    tissue_test::figure("with near_incompressibility" + at, averaged.force / finer.force);
     EXPECT_GT(linear.force, 1.2 * finer.force);
     EXPECT_NEAR(quadratic.force, finer.force, 0.1 * finer.force);
     EXPECT_NEAR(averaged.force, finer.force, 0.2 * finer.force);
