@@ -45,6 +45,14 @@ class Soak(unittest.TestCase):
         self.wait_for(lambda: self.status and self.status.mesh_uuid != self.uuid)
         self.uuid = self.status.mesh_uuid
 
+    def settle(self):
+        """Until all tools hold tissue: each that takes hold has it factorised anew."""
+        quick = 0
+        while quick < 10:
+            status = rospy.wait_for_message("/deformer_node/status", SimulationStatus, timeout=60)
+            holds = status.step_seconds < 0.1 and "TOOL_LOST" not in status.flags
+            quick = quick + 1 if holds else 0
+
     def wait_for(self, condition):
         for _ in range(600):
             if condition():
@@ -83,8 +91,7 @@ class Soak(unittest.TestCase):
             sizes = itertools.cycle((6000, 9000))
             self.build(next(sizes))
             self.build(next(sizes))
-            for _ in range(5):
-                rospy.wait_for_message("/deformer_node/status", SimulationStatus, timeout=60)
+            self.settle()
             poses, shown, meshes = len(forces), len(clouds), 0
             del self.latencies[:]
             memory = []
@@ -92,6 +99,8 @@ class Soak(unittest.TestCase):
             while time.monotonic() < end:
                 for _ in range(every or 1):
                     rospy.rostime.wallsleep(1.0)
+                if every:
+                    self.settle()
                 # Of the same mesh each: those of the smaller are another thing.
                 memory.append(resident_kilobytes(deformer))
                 if every:
