@@ -9,7 +9,7 @@ import unittest
 import rospkg
 import rostest
 
-from ros_world import World, log_of, resident_kilobytes, wait_for
+from ros_world import World, figure, log_of, resident_kilobytes, wait_for
 
 BUILD = dict(iso_value=20.0, initial_tetrahedra=2000, level_sections=2, smooth_levels=2)
 HUGE = {**BUILD, "initial_tetrahedra": 3000000}
@@ -105,9 +105,27 @@ class Faults(unittest.TestCase):
         before = resident_kilobytes(deformer)
         for _ in range(5):
             self.world.hear("/deformed_cloud", "PointCloud2", "m.width", 2)
-        self.assertLess(resident_kilobytes(deformer) - before, 5000)
+        grown = resident_kilobytes(deformer) - before
+        figure("P5", "memory grown [kB]", grown)
+        self.assertLess(grown, 5000)
         flood.terminate()
         self.assertEqual(self.world.process_of("/deformer_node"), deformer)
+
+    def test_3_X2_a_thousand_hostile_messages_cost_no_memory_and_no_mesh(self):
+        # The launch files limit the nodes' address space.
+        nodes = ("/mesher_node", "/deformer_node")
+        self.expect_serving()
+        mesh = self.mesh_of_deformer()
+        before = {node: (self.world.process_of(node), resident_kilobytes(self.world.process_of(node))) for node in nodes}
+        self.assertEqual(self.world.attack(1000), 1000)
+        self.assertGreater(self.world.hear("/deformer_node/status", "SimulationStatus", "m.rejected_meshes"), 500)
+        self.assertEqual(self.mesh_of_deformer(), mesh)
+        for node, (process, memory) in before.items():
+            self.assertEqual(self.world.process_of(node), process)
+            grown = resident_kilobytes(process) - memory
+            figure("X2", f"memory grown by 1,000 hostile messages, {node[1:]} [kB]", grown)
+            self.assertLess(grown, 20000, node)
+        self.expect_serving()
 
     def test_4_F9_clients_that_die_while_they_wait_leave_a_mesher_that_serves(self):
         mesher = self.world.process_of("/mesher_node")
@@ -133,7 +151,9 @@ class Faults(unittest.TestCase):
             begin = time.monotonic()
             os.kill(self.world.process_of("/ending"), end)
             self.assertEqual(mesher.wait(10), 0)
-            self.assertLess(time.monotonic() - begin, 2.0)
+            seconds = time.monotonic() - begin
+            figure("F5", "ends after [s]", round(seconds, 2))
+            self.assertLess(seconds, 2.0)
             self.assertEqual(os.listdir(folder), [])
 
     def test_5_F5_a_program_that_is_told_to_end_leaves_the_old_file(self):
@@ -213,7 +233,9 @@ class Faults(unittest.TestCase):
         self.world.core = self.world.start_core()
         begin = time.monotonic()
         wait_for(lambda: all(self.world.process_of(n) not in (None, old[n]) for n in nodes), 20)
-        self.assertLess(time.monotonic() - begin, 10.0)
+        seconds = time.monotonic() - begin
+        figure("F2", "started again after [s]", round(seconds, 2))
+        self.assertLess(seconds, 10.0)
         self.assertEqual(self.world.hear("/mesh", "TetMesh", "m.uuid", 10), before[1])
         wait_for(lambda: self.world.hear("/deformer_node/status", "SimulationStatus", scene) == before, 10)
         self.expect_serving()
