@@ -19,7 +19,7 @@ from sensor_msgs.msg import PointCloud2
 from soft_tissue_sim.msg import Result, SimulationStatus
 from soft_tissue_sim.srv import BuildMesh
 
-from ros_world import figure, resident_kilobytes
+from ros_world import figure, resident_kilobytes, wait_for
 
 LISTENER = """
 import rospy
@@ -42,7 +42,7 @@ class Soak(unittest.TestCase):
         """A mesh that the deformer has taken."""
         answer = self.mesher(use_mask=True, iso_value=20.0, initial_tetrahedra=size, level_sections=3, smooth_levels=2)
         self.assertEqual(answer.result.code, Result.OK, answer.result.message)
-        self.wait_for(lambda: self.status and self.status.mesh_uuid != self.uuid)
+        wait_for(lambda: self.status and self.status.mesh_uuid != self.uuid, 60)
         self.uuid = self.status.mesh_uuid
 
     def settle(self):
@@ -52,13 +52,6 @@ class Soak(unittest.TestCase):
             status = rospy.wait_for_message("/deformer_node/status", SimulationStatus, timeout=60)
             holds = status.step_seconds < 0.1 and "TOOL_LOST" not in status.flags
             quick = quick + 1 if holds else 0
-
-    def wait_for(self, condition):
-        for _ in range(600):
-            if condition():
-                return
-            rospy.rostime.wallsleep(0.1)
-        self.fail("what was waited for never came")
 
     def take_status(self, status):
         self.status = status
@@ -80,7 +73,7 @@ class Soak(unittest.TestCase):
         rospy.Subscriber("/deformed_cloud", PointCloud2, lambda cloud: clouds.append(cloud.width))
         rospy.Subscriber("/finger/servo_cf", WrenchStamped, lambda wrench: forces.append(wrench.wrench.force.z))
         # Tissue has been factorised and is moved.
-        self.wait_for(lambda: any(forces) and self.status)
+        wait_for(lambda: any(forces) and self.status, 60)
         self.uuid = self.status.mesh_uuid
         deformer = xmlrpc.client.ServerProxy(rospy.get_master().lookupNode("/deformer_node")[2]).getPid("/soak")[2]
         stalled = subprocess.Popen([sys.executable, "-c", LISTENER], stdout=subprocess.PIPE)

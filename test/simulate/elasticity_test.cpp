@@ -1,6 +1,6 @@
 // Finite elements against what is known exactly.
-#include "support/figures.h"
 #include "support/bodies.h"
+#include "support/figures.h"
 #include "support/known_solutions.h"
 #include "support/problem.h"
 
