@@ -124,39 +124,6 @@ TEST(Elasticity, AClampedBeamSagsAsFarAsItsModelHasItsLimit) {
   EXPECT_NEAR(1e3 * beam_sag({8, 4, 4}, 2, Constitution::kCorotational), 54.3, 0.03 * 54.3);
 }
 
-// A bar of layers, each with its own stiffness, pulled along its length with its sides sliding:
-// strains are in inverse proportion to stiffness, exactly.
-TEST(Elasticity, T12_ALayeredBarIsExactWhereLayersMeetAtFaces) {
-  for (const int order : {1, 2}) {
-    Body body = kuhn_block({8, 2, 2}, {0.08, 0.02, 0.02});
-    for (std::size_t t = 0; t < body.tets.size(); ++t) {
-      float x = 0.0f;
-      for (const std::uint32_t v : body.tets[t]) x += 0.25f * body.rest[v].x();
-      body.tet_densities[t] = std::fmod(x, 0.04f) < 0.02f ? 1.0f : 2.0f;
-    }
-    // Without lateral strain coupling (ν = 0) the series is one-dimensional.
-    const Material material = {{{1.0, 1e3}, {2.0, 1e5}}, 0.0, 1000.0};
-    Problem problem(std::move(body), order, Constitution::kLinear, material);
-    const std::vector<Vec3>& rest = problem.elements.rest();
-    const auto held =
-        nodes_where(rest, [](const Vec3& p) { return p.x() < 1e-7 || p.x() > 0.08 - 1e-7; });
-    const double pulled = 1e-3, soft = pulled / 0.04 / (1.0 + 1e-2), hard = 1e-2 * soft;
-    const auto expected = [&](double x) {
-      const double period = std::floor(x / 0.04 + 1e-6), rest_of = x - 0.04 * period;
-      return period * 0.02 * (soft + hard) + std::min(rest_of, 0.02) * soft +
-             std::max(0.0, rest_of - 0.02) * hard;
-    };
-    for (std::size_t node = 0; node < rest.size(); ++node) {
-      if (held[node] != 0) problem.move(node, Vec3(expected(rest[node].x()), 0, 0));
-    }
-    EXPECT_TRUE(problem.solve(held, nullptr, 1e-12).converged);
-    for (std::size_t node = 0; node < rest.size(); ++node) {
-      // Places are stored as floats.
-      EXPECT_NEAR(problem.displacement(node).x(), expected(rest[node].x()), 1e-8 * 0.08);
-    }
-  }
-}
-
 TEST(Elasticity, ResultsAreTheSameInMillimetresAfterRenumberingAndWithTwoThreads) {
   const auto bent = [](double unit, bool renumbered, int threads) {
     Body body = kuhn_block({6, 3, 3}, {0.06 * unit, 0.03 * unit, 0.03 * unit});
@@ -191,14 +158,6 @@ TEST(Elasticity, ResultsAreTheSameInMillimetresAfterRenumberingAndWithTwoThreads
     EXPECT_LE((metres[v] - millimetres[v]).norm(), 1e-7 * 0.06);
     EXPECT_LE((metres[v] - shuffled[v]).norm(), 1e-9 * 0.06);
   }
-}
-
-TEST(Elasticity, S4_T14_ABodyThatNothingHoldsIsFoundByItsPivots) {
-  Problem problem(kuhn_block({3, 2, 2}, {0.03, 0.02, 0.02}), 1, Constitution::kLinear, kSoft);
-  const auto system = eigen_system(problem.elements);
-  problem.energy.evaluate(problem.positions, nullptr, system.get());
-  const std::vector<std::uint8_t> nothing(3 * problem.elements.node_count(), 0);
-  EXPECT_FALSE(system->prepare(nothing, 0.0));
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ class LinearResponse {
   /// Positions of the watched nodes, and dE/dx there [N].
   Eigen::VectorXd watched_positions(const Eigen::VectorXd& amounts) const;
   Eigen::VectorXd watched_gradient(const Eigen::VectorXd& amounts) const;
+  /// How the vertices and after them other nodes move by a unit of each amount.
+  const std::vector<std::vector<float>>& columns() const { return columns_; }
   /// [J]; exact, because the energy is quadratic.
   double energy(const Eigen::VectorXd& amounts) const;
 

@@ -19,18 +19,38 @@ using Matrix = Eigen::SparseMatrix<double>;
 // called from two threads at once it finds wrong numbers.
 std::mutex blas_mutex;
 
+// A body that nothing holds is not noticed by a factorisation alone: its last pivots are rounding.
+constexpr double kLeastPivot = 1e-12;
+
+struct Simplicial : Eigen::SimplicialLDLT<Matrix, Eigen::Lower> {
+  static constexpr const char* kName = "ldlt";
+  // The smallest pivot by the largest.
+  double least_pivot() const {
+    return vectorD().size() == 0 ? 1.0 : vectorD().minCoeff() / vectorD().maxCoeff();
+  }
+  void require_memory() {}
+};
+
+#ifdef TISSUE_WITH_CHOLMOD
+struct Supernodal : Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower> {
+  static constexpr const char* kName = "cholmod";
+  Supernodal() { cholmod().print = 0; }
+  double least_pivot() { return cholmod_rcond(m_cholmodFactor, &cholmod()); }
+  // OpenBLAS, where it gets no memory for its buffers, asks again for ever.
+  void require_memory() {
+    constexpr double kBuffers = 256e6;
+    const double factor = sizeof(double) * cholmod().lnz;
+    if (factor + kBuffers > static_cast<double>(available_memory())) throw std::bad_alloc();
+  }
+};
+#endif
+
 // The order of elimination is found once for a pattern, which a matrix's blocks and what is fixed
 // in it decide.
 template <class Decomposition>
 class Direct : public LinearSolver {
  public:
-  Direct() {
-#ifdef TISSUE_WITH_CHOLMOD
-    if constexpr (kIsCholmod) decomposition_.cholmod().print = 0;
-#endif
-  }
-
-  const char* name() const override { return kIsCholmod ? "cholmod" : "ldlt"; }
+  const char* name() const override { return Decomposition::kName; }
 
   bool prepare(const BlockMatrix& matrix, const std::vector<std::uint8_t>& fixed,
                double shift) override {
@@ -42,13 +62,13 @@ class Direct : public LinearSolver {
     if (shift > 0.0) lower.diagonal().array() += shift;
     if (fixed != fixed_ || lower.nonZeros() != entries_) {
       decomposition_.analyzePattern(lower);
-      require_memory();
+      decomposition_.require_memory();
       entries_ = lower.nonZeros();
       fixed_ = fixed;
     }
     const std::lock_guard<std::mutex> lock(blas_mutex);
     decomposition_.factorize(lower);
-    return decomposition_.info() == Eigen::Success && is_definite();
+    return decomposition_.info() == Eigen::Success && decomposition_.least_pivot() > kLeastPivot;
   }
 
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) override {
@@ -69,30 +89,6 @@ class Direct : public LinearSolver {
   }
 
  private:
-  static constexpr bool kIsCholmod =
-      !std::is_same_v<Decomposition, Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>;
-
-  // OpenBLAS, where it gets no memory for its buffers, asks again for ever.
-  void require_memory() {
-#ifdef TISSUE_WITH_CHOLMOD
-    if constexpr (kIsCholmod) {
-      constexpr double kBuffers = 256e6;
-      const double factor = sizeof(double) * decomposition_.cholmod().lnz;
-      if (factor + kBuffers > static_cast<double>(available_memory())) throw std::bad_alloc();
-    }
-#endif
-  }
-
-  bool is_definite() const {
-    if constexpr (!kIsCholmod) {
-      // Eigen reports success also for a body that nothing holds: its last pivots are rounding.
-      constexpr double kLeastRatio = 1e-14;
-      const auto pivots = decomposition_.vectorD();
-      return pivots.size() == 0 || pivots.minCoeff() > kLeastRatio * pivots.maxCoeff();
-    }
-    return true;
-  }
-
   Decomposition decomposition_;
   // For each coordinate its number among the free ones, or −1.
   std::vector<int> number_;
@@ -103,13 +99,11 @@ class Direct : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> eigen_solver() {
-  return std::make_unique<Direct<Eigen::SimplicialLDLT<Matrix, Eigen::Lower>>>();
-}
+std::unique_ptr<LinearSolver> eigen_solver() { return std::make_unique<Direct<Simplicial>>(); }
 
 std::unique_ptr<LinearSolver> direct_solver() {
 #ifdef TISSUE_WITH_CHOLMOD
-  return std::make_unique<Direct<Eigen::CholmodSupernodalLLT<Matrix, Eigen::Lower>>>();
+  return std::make_unique<Direct<Supernodal>>();
 #else
   return eigen_solver();
 #endif

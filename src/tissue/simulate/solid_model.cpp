@@ -112,13 +112,15 @@ class SolidModel : public DeformationModel {
   // Small strain: where the tools go decides where everything goes, and nothing is solved.
   void superpose(const ToolPoses& tools) {
     if (!solid_.held().any_grip()) return;
-    if (!response_) response_.emplace(equilibrium_, solid_.held(), positions_, actions_.reached());
+    if (!response_)
+      response_.emplace(body_, equilibrium_, solid_.held(), positions_, actions_.reached());
     response_->follow(tools, state_.positions);
     superposed_.resize(0);
     solid_.held().place(tools, state_.positions);
     actions_.set_reached(tools);
     report_.iterations = 0;
     report_.energy = response_->energy();
+    report_.folded = response_->folds(state_.positions);
   }
 
   // Of all nodes, also after a superposition.
@@ -202,10 +204,8 @@ class SolidModel : public DeformationModel {
       state_.positions[v] = positions_.segment<3>(i);
       report_.moved_vertices += state_.positions[v] != Vec3(rest_.segment<3>(i));
     }
-    report_.folded = std::any_of(body_.tets.begin(), body_.tets.end(), [&](const Tet& tet) {
-      const std::vector<Vec3>& at = state_.positions;
-      return !(determinant(at[tet[0]], at[tet[1]], at[tet[2]], at[tet[3]]) > 0.0);
-    });
+    report_.folded = std::any_of(body_.tets.begin(), body_.tets.end(),
+                                 [&](const Tet& tet) { return is_folded(tet, state_.positions); });
   }
 
   const SceneDescription& scene_;

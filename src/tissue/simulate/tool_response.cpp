@@ -5,7 +5,7 @@
 namespace tissue {
 namespace {
 
-constexpr Eigen::Index kMotions = 12;
+constexpr Eigen::Index kShifts = 3, kTurns = 9, kMotions = kShifts + kTurns;
 
 // Twelve motions for each tool, by a unit each: along the axes, then the columns of R − I.
 std::vector<Eigen::VectorXd> unit_motions(const HeldNodes& held, const Eigen::VectorXd& base,
@@ -43,13 +43,20 @@ std::vector<std::size_t> nodes_of(const std::vector<std::vector<HeldNodes::Share
   return nodes;
 }
 
+std::vector<Eigen::Index> groups_of(std::size_t tools) {
+  std::vector<Eigen::Index> groups;
+  for (std::size_t tool = 0; tool < tools; ++tool) groups.insert(groups.end(), {kShifts, kTurns});
+  return groups;
+}
+
 }  // namespace
 
-ToolResponse::ToolResponse(Equilibrium& equilibrium, const HeldNodes& held,
+ToolResponse::ToolResponse(const Body& body, Equilibrium& equilibrium, const HeldNodes& held,
                            const Eigen::VectorXd& base, ToolPoses base_tools)
     : base_tools_(std::move(base_tools)),
       shares_(shares_of(held, base_tools_.size())),
-      response_(equilibrium, base, unit_motions(held, base, base_tools_), nodes_of(shares_)) {}
+      response_(equilibrium, base, unit_motions(held, base, base_tools_), nodes_of(shares_)),
+      watch_(body, base, response_.columns(), groups_of(base_tools_.size())) {}
 
 Wrench ToolResponse::wrench(std::size_t tool, const Vec3& centre) const {
   const Eigen::VectorXd positions = response_.watched_positions(amounts_),
@@ -71,13 +78,14 @@ void ToolResponse::follow(const ToolPoses& tools, std::vector<Vec3>& vertices) {
   for (std::size_t i = 0; i < tools.size(); ++i) {
     if (!tools[i] || !base_tools_[i]) continue;
     const auto k = kMotions * static_cast<Eigen::Index>(i);
-    amounts_.segment<3>(k) = tools[i]->position - base_tools_[i]->position;
+    amounts_.segment<kShifts>(k) = tools[i]->position - base_tools_[i]->position;
     // A tool that only moves costs one pass over the body, one that turns four.
     if (tools[i]->orientation.coeffs() == base_tools_[i]->orientation.coeffs()) continue;
     const Eigen::Quaterniond turn =
         tools[i]->orientation.normalized() * base_tools_[i]->orientation.normalized().conjugate();
     const Mat3 change = turn.toRotationMatrix() - Mat3::Identity();
-    amounts_.segment<9>(k + 3) = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change.data());
+    amounts_.segment<kTurns>(k + kShifts) =
+        Eigen::Map<const Eigen::Matrix<double, kTurns, 1>>(change.data());
   }
   response_.superpose(amounts_, vertices);
 }
