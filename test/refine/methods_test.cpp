@@ -1,5 +1,6 @@
 // What a mesh can be asked for beside densities: other methods, totals, components, to stop.
 #include "support/mesh_checks.h"
+#include "support/sanitizers.h"
 #include "support/shapes.h"
 #include "tissue/base/machine_memory.h"
 #include "tissue/refine/build_mesh.h"
@@ -170,6 +171,7 @@ TEST(Methods, M9_ABuildThatIsCancelledStopsAtItsNextPieceAndSaysHowFarItCame) {
 }
 
 TEST(Methods, WhatWouldNotFitIntoMemoryIsRefusedWithTheFigureBeforeItStarts) {
+  if (tissue_test::kSanitized) GTEST_SKIP() << "a sanitizer needs the address space";
   const auto organ = tissue_test::organ_phantom({64, 80, 56});
   rlimit before{};
   getrlimit(RLIMIT_AS, &before);

@@ -132,24 +132,21 @@ TEST(Torture, T13_LinearSolvesHoldTheirResidual) {
 
 // Pressed together by a tenth between plates that do not let it slip: the force, and the part of
 // the volume that is lost.
-constexpr double kBlock = 0.04;
 struct Pressed {
   double force, volume_lost;
 };
-Pressed pressed(int cells, int order, double poisson, const std::string& effect = "") {
-  const auto body = std::make_shared<Body>(
-      tissue_test::kuhn_block({cells, cells, cells}, Vec3::Constant(kBlock), 0));
-  Scene scene(parse_scene("model: neo_hookean\nelement_order: " + std::to_string(order) +
-                          "\nmaterial: {young: [[0, 1e4]], poisson: " + std::to_string(poisson) +
-                          "}\nanchors: [{plane: {axis: z, below: 1e-7}}]\n"
+Pressed pressed(const Subject& subject, const Tissue& tissue, int order,
+                const std::string& effect = "") {
+  Scene scene(parse_scene("model: neo_hookean\nelement_order: " + std::to_string(order) + "\n" +
+                          tissue.scene(subject) +
                           "tools: [{name: plate, shape: {sphere: 0.9}, mode: grasp}]\n"
-                          "effects: [" +
+                          "effects: [density_response" +
                           effect + "]\n"),
-              body);
+              subject.body);
   // So large a sphere holds what is on top, and nothing below.
-  const Vec3 above(0.5 * kBlock, 0.5 * kBlock, kBlock + 0.9 - 0.03 * kBlock);
+  const Vec3 above = tissue_test::top_of(subject) + Vec3(0.0, 0.0, 0.9 - 0.03 * subject.size);
   EXPECT_FALSE(scene.step(ToolPose{above}, 0.0).not_converged);
-  const StepReport report = scene.step(ToolPose{above - Vec3(0.0, 0.0, 0.1 * kBlock)}, 0.0);
+  const StepReport report = scene.step(ToolPose{above - Vec3(0.0, 0.0, 0.1 * subject.size)}, 0.0);
   EXPECT_FALSE(report.not_converged) << report.residual;
   Pressed result = {scene.tool_forces()[0]->z(), 0.0};
   const std::vector<TetStrain> strains = scene.strains();
@@ -159,13 +156,23 @@ Pressed pressed(int cells, int order, double poisson, const std::string& effect 
   return result;
 }
 
+// Without a tumour, in cubes of six tets.
+Subject even_block(int cells) {
+  return {"even block",
+          std::make_shared<const Body>(
+              tissue_test::kuhn_block({cells, cells, cells}, Vec3::Constant(0.04))),
+          0.04, 0.04, 1e-7};
+}
+
 // Linear tets lock where tissue keeps its volume; what that costs is stated, not hidden, and so is
 // what the effect leaves of it.
 TEST(Torture, T17_LinearTetsLockAndTheirExcessIsMeasured) {
   for (const double poisson : {0.49, 0.4999}) {
-    const Pressed finer = pressed(6, 2, poisson), quadratic = pressed(3, 2, poisson),
-                  linear = pressed(6, 1, poisson),
-                  averaged = pressed(6, 1, poisson, "near_incompressibility");
+    const Subject coarse = even_block(3), fine = even_block(6);
+    const Tissue even = {1.0, poisson};
+    const Pressed finer = pressed(fine, even, 2), quadratic = pressed(coarse, even, 2),
+                  linear = pressed(fine, even, 1),
+                  averaged = pressed(fine, even, 1, ", near_incompressibility");
     std::printf(
         "Poisson's ratio %g: linear tets %.2f times as stiff as quadratic ones, with "
         "near_incompressibility %.2f times, quadratic ones with as many nodes %.2f times; volume "
@@ -183,6 +190,19 @@ TEST(Torture, T17_LinearTetsLockAndTheirExcessIsMeasured) {
     for (const Pressed& one : {finer, quadratic, linear, averaged}) {
       EXPECT_LT(std::abs(one.volume_lost), 0.01);
     }
+  }
+}
+
+// Against quadratic tets on the same mesh.
+TEST(Torture, T17_LinearTetsLockOnRefinedMeshesWithATumourToo) {
+  const Subject& ball = tissue_test::subjects()[1];
+  for (const double contrast : tissue_test::kContrasts) {
+    const Tissue tissue = {contrast, 0.4999};
+    const Pressed linear = pressed(ball, tissue, 1), quadratic = pressed(ball, tissue, 2);
+    tissue_test::figure("on a refined ball at contrast " + std::to_string(std::lround(contrast)),
+                        linear.force / quadratic.force);
+    EXPECT_GT(linear.force, quadratic.force);
+    EXPECT_LT(std::abs(quadratic.volume_lost), 0.01);
   }
 }
 

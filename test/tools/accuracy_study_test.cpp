@@ -1,4 +1,5 @@
 #include "support/program.h"
+#include "support/sanitizers.h"
 
 #include <gtest/gtest.h>
 
@@ -99,6 +100,7 @@ TEST(AccuracyStudy, AKilledStudyResumesWithTheRowsThatItHas) {
 }
 
 TEST(AccuracyStudy, ARowWithoutMemoryIsARowWithItsReason) {
+  if (tissue_test::kSanitized) GTEST_SKIP() << "a sanitizer needs the address space";
   const std::string folder = temporary("tissue_study_starved");
   std::filesystem::remove_all(folder);
   // Address space in kilobytes: enough to start with, too little to factorise. (OpenBLAS would ask
