@@ -242,6 +242,7 @@ void DeformerNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("dropped poses", tools_->dropped());
   status.add("rejected meshes", rejected_meshes_);
   status.add("resident memory [MB]", tissue::resident_memory() / 1000000);
+  status.add("allocated memory [kB]", tissue::allocated_memory() / 1000);
 }
 
 }  // namespace tissue_ros

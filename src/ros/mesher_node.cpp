@@ -294,6 +294,7 @@ void MesherNode::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("meshes built", built_.load());
   status.add("requests and volumes rejected", rejected_.load());
   status.add("resident memory [MB]", tissue::resident_memory() / 1000000);
+  status.add("allocated memory [kB]", tissue::allocated_memory() / 1000);
 }
 
 }  // namespace tissue_ros

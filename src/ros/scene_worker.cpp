@@ -2,6 +2,8 @@
 
 #include "ros/guarded.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -13,6 +15,8 @@ namespace {
 constexpr std::size_t kMostWaiting = 100000;
 // When a bag is over nothing comes that would push out what waits [s].
 constexpr double kSilence = 1.0;
+// In steps of a moving scene nothing takes so long but a factorisation [s].
+constexpr double kLongStep = 0.5;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -252,7 +256,11 @@ void SceneWorker::step(const tissue::ToolPoses& tools, double dt) {
   const auto start = std::chrono::steady_clock::now();
   const tissue::StepReport report = scene_.step(tools, dt);
   tools_ = tools;
-  tell(report, seconds_since(start), tools);
+  const double seconds = seconds_since(start);
+  tell(report, seconds, tools);
+  // A step that factorised anew leaves much that was needed only for that, in pieces that the
+  // allocator keeps.
+  if (seconds > kLongStep) malloc_trim(0);
 }
 
 void SceneWorker::tell(const tissue::StepReport& report, double seconds,

@@ -30,6 +30,11 @@ rospy.spin()
 """
 
 
+TOOLS = ("finger", "thumb", "forceps")
+# A tool that touches the tissue later than the others has it factorised again [s].
+LONGEST_GRIP = 8.0
+
+
 def slope(values):
     """Of the least-squares line through values that are one apart."""
     middle, mean = (len(values) - 1) / 2, sum(values) / len(values)
@@ -44,36 +49,58 @@ class Soak(unittest.TestCase):
         self.assertEqual(answer.result.code, Result.OK, answer.result.message)
         wait_for(lambda: self.status and self.status.mesh_uuid != self.uuid, 60)
         self.uuid = self.status.mesh_uuid
+        self.felt.clear()
 
     def settle(self):
-        """Until all tools hold tissue: each that takes hold has it factorised anew."""
-        quick = 0
-        while quick < 10:
-            status = rospy.wait_for_message("/deformer_node/status", SimulationStatus, timeout=60)
-            holds = status.step_seconds < 0.1 and "TOOL_LOST" not in status.flags
-            quick = quick + 1 if holds else 0
+        """Until all tools hold tissue, which each of them has factorised anew, and clouds show what they do now."""
+        self.late = time.monotonic()
+        wait_for(lambda: self.felt >= set(TOOLS) and time.monotonic() - self.late > LONGEST_GRIP, 300)
+
+    def least(self, process, seconds):
+        """Of the memory that it takes and of what it has allocated [kB], the least within a time: what is on its way to
+        subscribers comes and goes."""
+        del self.allocated[:]
+        resident = []
+        while len(resident) < 10 * seconds or not self.allocated:
+            rospy.rostime.wallsleep(0.1)
+            resident.append(resident_kilobytes(process))
+        return min(resident), min(self.allocated)
+
+    def take_force(self, wrench, tool):
+        if wrench.wrench.force.z != 0.0:
+            self.felt.add(tool)
+        self.forces += tool == TOOLS[0]
+
+    def take_cloud(self, cloud):
+        self.clouds += 1
+        self.width = cloud.width
+        if (rospy.Time.now() - cloud.header.stamp).to_sec() > 2.0:
+            self.late = time.monotonic()
 
     def take_status(self, status):
         self.status = status
 
     def take_diagnostics(self, array):
         for status in array.status:
-            for pair in status.values:
-                if pair.key == "poses of finger, until the force is sent, median, p99, largest [ms]":
-                    self.latencies.append(float(pair.value.split(",")[0]))
+            values = {pair.key: pair.value for pair in status.values}
+            delays = values.get("poses of finger, until the force is sent, median, p99, largest [ms]")
+            if delays:
+                self.latencies.append(float(delays.split(",")[0]))
+                self.allocated.append(int(values["allocated memory [kB]"]))
 
     def test_F4_memory_and_latency_stay_as_they_are(self):
         rospy.init_node("soak")
         seconds, every = int(rospy.get_param("~seconds")), int(rospy.get_param("~mesh_every"))
-        self.status, self.uuid, self.latencies = None, "", []
-        clouds, forces = [], []
+        self.status, self.uuid, self.latencies, self.allocated, self.felt, self.forces = None, "", [], [], set(), 0
+        self.clouds, self.width, self.late = 0, 0, 0.0
         self.mesher = rospy.ServiceProxy("/mesher_node/build_mesh", BuildMesh)
         rospy.Subscriber("/deformer_node/status", SimulationStatus, self.take_status)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self.take_diagnostics)
-        rospy.Subscriber("/deformed_cloud", PointCloud2, lambda cloud: clouds.append(cloud.width))
-        rospy.Subscriber("/finger/servo_cf", WrenchStamped, lambda wrench: forces.append(wrench.wrench.force.z))
+        rospy.Subscriber("/deformed_cloud", PointCloud2, self.take_cloud)
+        for tool in TOOLS:
+            rospy.Subscriber(f"/{tool}/servo_cf", WrenchStamped, self.take_force, tool)
         # Tissue has been factorised and is moved.
-        wait_for(lambda: any(forces) and self.status, 60)
+        wait_for(lambda: self.felt and self.status, 60)
         self.uuid = self.status.mesh_uuid
         deformer = xmlrpc.client.ServerProxy(rospy.get_master().lookupNode("/deformer_node")[2]).getPid("/soak")[2]
         stalled = subprocess.Popen([sys.executable, "-c", LISTENER], stdout=subprocess.PIPE)
@@ -85,17 +112,15 @@ class Soak(unittest.TestCase):
             self.build(next(sizes))
             self.build(next(sizes))
             self.settle()
-            poses, shown, meshes = len(forces), len(clouds), 0
+            poses, shown, meshes = self.forces, self.clouds, 0
             del self.latencies[:]
             memory = []
             end = time.monotonic() + seconds
             while time.monotonic() < end:
-                for _ in range(every or 1):
-                    rospy.rostime.wallsleep(1.0)
                 if every:
                     self.settle()
                 # Of the same mesh each: those of the smaller are another thing.
-                memory.append(resident_kilobytes(deformer))
+                memory.append(self.least(deformer, every or 1))
                 if every:
                     self.build(next(sizes))
                     self.build(next(sizes))
@@ -104,22 +129,24 @@ class Soak(unittest.TestCase):
             stalled.kill()
             stalled.wait()
         a_minute = 60.0 / seconds * len(memory)
-        growth = slope(memory) * a_minute
+        resident, allocated = zip(*memory)
+        growth = slope(allocated) * a_minute
         early, late = (statistics.median(part) for part in
                        (self.latencies[:len(self.latencies) // 2], self.latencies[len(self.latencies) // 2:]))
-        print(f"soak: {seconds} s, {len(forces) - poses} forces to one of three tools, {len(clouds) - shown} clouds of "
-              f"{clouds[-1]} vertices, {meshes} meshes; resident {memory[0]} kB at first, {min(memory)} to {max(memory)}, "
-              f"slope {growth:.0f} kB/min; pose to force {early:.3f} ms in the first half, {late:.3f} in the second",
+        print(f"soak: {seconds} s, {self.forces - poses} forces to one of three tools, {self.clouds - shown} clouds of "
+              f"{self.width} vertices, {meshes} meshes; allocated {allocated[0]} kB at first, {min(allocated)} to "
+              f"{max(allocated)}, slope {growth:.0f} kB/min; resident {resident[0]} kB at first, {min(resident)} to "
+              f"{max(resident)}, slope {slope(resident) * a_minute:.0f} kB/min; pose to force {early:.3f} ms in the first half, {late:.3f} in the second",
               flush=True)
-        figure("F4", f"memory, most above the first in {seconds} s, {meshes} meshes [kB]", max(memory) - memory[0])
+        figure("F4", f"memory, most above the first in {seconds} s, {meshes} meshes [kB]", max(resident) - resident[0])
         figure("F4", "pose to force, median, second half [ms]", round(late, 3))
-        if not every:
-            self.assertLess(max(memory) - memory[0], 5000)
+        # What the allocator keeps of one mesh and gives to the next comes and goes by megabytes; none of it is lost.
+        self.assertLess(max(resident) - resident[0], 0.05 * resident[0] if every else 5000)
         if seconds >= 600:
             self.assertLess(growth, 100)
         self.assertLess(late, 2 * early + 0.1)
-        self.assertGreater(len(clouds) - shown, 5 * seconds)
-        self.assertGreater(len(forces) - poses, 100 * seconds)
+        self.assertGreater(self.clouds - shown, 5 * seconds)
+        self.assertGreater(self.forces - poses, 100 * seconds)
         os.kill(deformer, 0)
 
 

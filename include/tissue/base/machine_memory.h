@@ -11,4 +11,8 @@ std::size_t available_memory();
 /// Bytes of this process that are in memory now; 0 where that is not known.
 std::size_t resident_memory();
 
+/// Bytes that this process has asked the allocator for and not given back; 0 where that is not
+/// known. Free of what the allocator keeps for later.
+std::size_t allocated_memory();
+
 }  // namespace tissue

@@ -1,5 +1,6 @@
 #include "tissue/base/machine_memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -48,5 +49,15 @@ std::size_t limit_leaves() {
 std::size_t available_memory() { return std::min(system_has(), limit_leaves()); }
 
 std::size_t resident_memory() { return own_memory().resident; }
+
+std::size_t allocated_memory() {
+#if defined(__GLIBC_PREREQ)
+#if __GLIBC_PREREQ(2, 33)
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+#endif
+#endif
+  return 0;
+}
 
 }  // namespace tissue

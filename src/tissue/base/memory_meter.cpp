@@ -1,5 +1,8 @@
 // Replaces operator new and delete in the programs that are linked with this file, so that they can
-// report how much memory their containers really took. Programs without it lose only that figure.
+// report how much memory their containers really took. Programs without it lose only that figure,
+// as do those that a sanitizer watches: it has its own.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
 #include "memory_counters.h"
 
 #include <malloc.h>
@@ -58,3 +61,5 @@ void operator delete(void* block, std::align_val_t) noexcept { release(block); }
 void operator delete[](void* block, std::align_val_t) noexcept { release(block); }
 void operator delete(void* block, std::size_t, std::align_val_t) noexcept { release(block); }
 void operator delete[](void* block, std::size_t, std::align_val_t) noexcept { release(block); }
+
+#endif
