@@ -86,7 +86,12 @@ Eigen::VectorXd LinearResponse::watched_gradient(const Eigen::VectorXd& amounts)
 }
 
 double LinearResponse::energy(const Eigen::VectorXd& amounts) const {
-  return base_energy_ + slopes_.dot(amounts) + 0.5 * amounts.dot(curvatures_ * amounts);
+  // Term by term, for a product needs memory of its own at each step.
+  double curved = 0.0;
+  for (Eigen::Index k = 0; k < amounts.size(); ++k) {
+    if (amounts[k] != 0.0) curved += amounts[k] * curvatures_.col(k).dot(amounts);
+  }
+  return base_energy_ + slopes_.dot(amounts) + 0.5 * curved;
 }
 
 }  // namespace tissue

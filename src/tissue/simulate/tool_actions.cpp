@@ -13,7 +13,15 @@ bool ToolActions::take(const ToolPoses& tools, const std::vector<Vec3>& vertices
                        const PositionsNow& positions) {
   regrips_ = held_.update(tools, vertices);
   bool changes = regrips_;
-  reached_ = between(reached_.empty() ? tools : reached_, tools, 0.0);
+  reached_.resize(tools.size());
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    // One that was there is still where it was.
+    if (tools[i] && reached_[i]) {
+      reached_[i]->closed = tools[i]->closed;
+    } else {
+      reached_[i] = tools[i];
+    }
+  }
   for (const Part& part : parts_) {
     const CostClock clock(part.cost);
     if (part.effect->take(tools, positions)) changes = true;
