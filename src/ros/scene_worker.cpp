@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostWaiting = 100000;
 // When a bag is over nothing comes that would push out what waits [s].
 constexpr double kSilence = 1.0;
-// In steps of a moving scene nothing takes so long but a factorisation [s].
+// Giving memory back takes nothing beside a step that takes so long [s].
 constexpr double kLongStep = 0.5;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -258,7 +258,7 @@ void SceneWorker::step(const tissue::ToolPoses& tools, double dt) {
   tools_ = tools;
   const double seconds = seconds_since(start);
   tell(report, seconds, tools);
-  // A step that factorised anew leaves much that was needed only for that, in pieces that the
+  // A long step, such as one that factorises anew, leaves what only it needed in pieces that the
   // allocator keeps.
   if (seconds > kLongStep) malloc_trim(0);
 }

@@ -1,7 +1,6 @@
-// Many random poses through every model on a small refined ball with a hard core: what comes out,
-// and whether each step that went wrong said so. scripts/long_paths
+// Many random poses through every model, on a small block or a refined ball with a hard core: what
+// comes out, and whether each step that went wrong said so. scripts/long_paths
 #include "support/bodies.h"
-#include "tissue/base/tet_mesh.h"
 #include "tissue/simulate/scene.h"
 #include "tissue/simulate/scene_file.h"
 
@@ -129,16 +128,13 @@ Outcome run(const Path& path, const Case& which, std::size_t steps) {
     const StepReport report = scene.step(wanderer.next(), 0.002);
     outcome.not_converged += report.not_converged;
     outcome.clamped += report.clamped;
-    bool finite = true, inverted = false;
+    bool finite = true;
+    const bool inverted = deformation_quality(body, scene.state()).inverted > 0;
     const std::vector<Vec3>& places = scene.state().positions;
     for (std::size_t v = 0; v < places.size(); ++v) {
       finite = finite && places[v].allFinite();
       outcome.farthest =
           std::max(outcome.farthest, (places[v] - body.rest[v].cast<double>()).norm());
-    }
-    for (const Tet& tet : body.tets) {
-      inverted = inverted || !(determinant(places[tet[0]], places[tet[1]], places[tet[2]],
-                                           places[tet[3]]) > 0.0);
     }
     outcome.folded += inverted;
     outcome.unsaid += !finite || (inverted && !report.not_converged && !report.folded);

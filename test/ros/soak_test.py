@@ -143,7 +143,10 @@ class Soak(unittest.TestCase):
         # What the allocator keeps of one mesh and gives to the next comes and goes by megabytes; none of it is lost.
         self.assertLess(max(resident) - resident[0], 0.05 * resident[0] if every else 5000)
         if seconds >= 600:
+            self.assertGreater(min(allocated), 0)
             self.assertLess(growth, 100)
+            if not every:
+                self.assertLess(slope(resident) * a_minute, 100)
         self.assertLess(late, 2 * early + 0.1)
         self.assertGreater(self.clouds - shown, 5 * seconds)
         self.assertGreater(self.forces - poses, 100 * seconds)

@@ -44,7 +44,7 @@ struct StepReport {
   /// No equilibrium was found: the state is the last valid one.
   bool not_converged = false;
   /// Some tet is inside out: laws of solids allow it where tissue is moved too far or too fast, and
-  /// bring it back. Not looked at where small strains are superposed.
+  /// bring it back. Not looked at by closed_form, which has the effect fold_guard for it.
   bool folded = false;
   std::size_t moved_vertices = 0;
   /// Numbers that a step finds; 0 for closed_form.
@@ -102,8 +102,8 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
 
   /// Advances by `dt` seconds to the tools' poses. Throws InputError E_DT unless 0 <= dt is finite,
-  /// E_NONFINITE for a pose that is not, E_PARAM for one beyond kFarthestTool and for a wrong number
-  /// of poses; the state is then as before.
+  /// E_NONFINITE for a pose that is not, E_PARAM for one beyond kFarthestTool and for a wrong
+  /// number of poses; the state is then as before.
   StepReport step(const ToolPoses& tools, double dt);
   /// For a scene of one tool.
   StepReport step(const std::optional<ToolPose>& tool, double dt) {
