@@ -41,6 +41,9 @@ tissue_test(test_tools LIBRARIES tissue_test_support SOURCES
   tools/accuracy_study_test.cpp tools/mesh_volume_test.cpp tools/run_scene_test.cpp)
 target_compile_definitions(test_tools PRIVATE
   ACCURACY_STUDY="$<TARGET_FILE:accuracy_study>" MESH_VOLUME="$<TARGET_FILE:mesh_volume>" RUN_SCENE="$<TARGET_FILE:run_scene>")
+# Those that take longest begin first.
+set_tests_properties(test_simulate PROPERTIES COST 100)
+set_tests_properties(test_refine PROPERTIES COST 50)
 tissue_test(test_fuzz_corpus LIBRARIES tissue_field tissue_mesh_file tissue_simulate SOURCES
   fuzz/corpus_test.cpp fuzz/targets.cpp)
 
