@@ -4,6 +4,7 @@ set(TISSUE_ROS_PACKAGES
   tf2_geometry_msgs tf2_ros topic_tools visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS ${TISSUE_ROS_PACKAGES} message_generation)
 
+catkin_python_setup()
 add_message_files(FILES
   EffectCost.msg MeshStatistics.msg Probes.msg Result.msg SimulationStatus.msg StageCost.msg TetMesh.msg
   Volume.msg)

@@ -6,8 +6,16 @@ target_include_directories(tissue_point_file PRIVATE src SYSTEM PRIVATE ${PCL_IN
 target_compile_definitions(tissue_point_file PRIVATE ${PCL_DEFINITIONS})
 target_link_libraries(tissue_point_file PUBLIC tissue_base PRIVATE ${PCL_LIBRARIES})
 
+# Nodes say for --help what config/parameters.yaml says.
+set(parameters ${CMAKE_CURRENT_SOURCE_DIR}/config/parameters.yaml)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${parameters})
+file(READ ${parameters} TISSUE_PARAMETERS_YAML)
+configure_file(src/ros/parameters_text.cpp.in parameters_text.cpp @ONLY)
+
 add_library(tissue_ros
+  ${CMAKE_CURRENT_BINARY_DIR}/parameters_text.cpp
   src/ros/bag_run.cpp
+  src/ros/colours.cpp
   src/ros/convert.cpp
   src/ros/deformer_node.cpp
   src/ros/device_adapter_node.cpp
@@ -20,6 +28,7 @@ add_library(tissue_ros
   src/ros/mouse_tool_node.cpp
   src/ros/node_main.cpp
   src/ros/scene_worker.cpp
+  src/ros/section.cpp
   src/ros/settings.cpp
   src/ros/simulation.cpp
   src/ros/tool_listener.cpp
@@ -46,6 +55,8 @@ endforeach()
 add_library(tissue_nodelets MODULE src/ros/nodelets.cpp)
 target_link_libraries(tissue_nodelets tissue_ros)
 
+include(cmake/rviz_display.cmake)
+
 install(TARGETS
     accuracy_study mesh_volume run_scene ${TISSUE_NODES}
   RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
@@ -54,5 +65,6 @@ install(TARGETS
     tissue_point_file tissue_simulate tissue_study tissue_triangle_surface tissue_yaml
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION})
+catkin_install_python(PROGRAMS scripts/plot_bag DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(DIRECTORY include/tissue DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})
 install(DIRECTORY config data launch rviz DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})

@@ -209,6 +209,33 @@ sensor_msgs::PointCloud2 cloud_message(const tissue::Body& body, const tissue::S
   return cloud;
 }
 
+std::vector<tissue::Vec3f> places_in(const sensor_msgs::PointCloud2& cloud) {
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  for (std::uint32_t i = 0; i < kNames.size(); ++i) {
+    const bool is_there = cloud.fields.size() > i && cloud.fields[i].name == kNames[i] &&
+                          cloud.fields[i].datatype == sensor_msgs::PointField::FLOAT32 &&
+                          cloud.fields[i].offset == i * sizeof(float);
+    if (!is_there || cloud.is_bigendian || cloud.point_step < sizeof(tissue::Vec3f)) {
+      throw InputError(ErrorCode::kEncoding, "fields: do not begin with x, y, z in float32");
+    }
+  }
+  const std::size_t count = std::size_t{cloud.width} * cloud.height;
+  if (cloud.data.size() / cloud.point_step < count) {
+    throw InputError(ErrorCode::kSizeMismatch, "data: " + std::to_string(cloud.data.size()) +
+                                                   " bytes are too few for " +
+                                                   std::to_string(count) + " points");
+  }
+  std::vector<tissue::Vec3f> places(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::memcpy(places[i].data(), &cloud.data[i * cloud.point_step], sizeof(tissue::Vec3f));
+    if (!places[i].allFinite()) {
+      throw InputError(ErrorCode::kNonfinite,
+                       "data: point " + std::to_string(i) + " is not finite");
+    }
+  }
+  return places;
+}
+
 std::vector<std::uint8_t> vertex_levels(const tissue::TetMesh& mesh) {
   std::vector<std::uint8_t> levels(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

@@ -41,6 +41,11 @@ soft_tissue_sim::Result to_message(tissue::ErrorCode code, const std::string& se
 sensor_msgs::PointCloud2 cloud_message(const tissue::Body& body, const tissue::State& state,
                                        const std::vector<std::uint8_t>& levels);
 
+/// Where the points of such a cloud are, or of any that begins with x y z in float32 [m]. Throws
+/// tissue::InputError: E_ENCODING for another cloud, E_SIZE_MISMATCH if it is shorter than it says,
+/// E_NONFINITE for a place that is not finite.
+std::vector<tissue::Vec3f> places_in(const sensor_msgs::PointCloud2& cloud);
+
 /// How a scene is and what its last step did. Header, mesh and counters are left open.
 soft_tissue_sim::SimulationStatus to_message(const tissue::SceneDescription& scene,
                                              const std::vector<tissue::EffectCost>& costs,

@@ -1,33 +1,15 @@
 #include "ros/display_mesh.h"
 
-#include "tissue/base/topology.h"
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <unordered_map>
 
 namespace tissue_ros {
 namespace {
 
-using tissue::Tet;
 using tissue::TetMesh;
 using tissue::Vec3f;
 using Faces = std::vector<DisplayMesh::Face>;
-
-struct Extent {
-  Vec3f low, high;
-};
-
-Extent extent_of(const TetMesh& mesh) {
-  Extent extent{Vec3f::Constant(std::numeric_limits<float>::infinity()),
-                Vec3f::Constant(-std::numeric_limits<float>::infinity())};
-  for (const Vec3f& vertex : mesh.vertices) {
-    extent.low = extent.low.cwiseMin(vertex);
-    extent.high = extent.high.cwiseMax(vertex);
-  }
-  return extent;
-}
 
 // Merges the vertices within each cube of the given size into the first of them; triangles that
 // shrink to nothing go.
@@ -63,47 +45,19 @@ Faces thinned(const Faces& faces, const TetMesh& mesh, const Extent& extent, std
   return result;
 }
 
-}  // namespace
-
-Section section_from(const std::string& axis, double at) {
-  const std::string axes = "xyz";
-  const std::size_t found = axis.size() == 1 ? axes.find(axis) : std::string::npos;
-  return {found == std::string::npos ? -1 : static_cast<int>(found), at};
+Faces with_levels(const std::vector<SeenFace>& seen, const TetMesh& mesh) {
+  Faces faces;
+  faces.reserve(seen.size());
+  for (const SeenFace& face : seen) faces.push_back({face.corners, mesh.levels[face.tet]});
+  return faces;
 }
 
+}  // namespace
+
 DisplayMesh display_mesh(const TetMesh& mesh, const Section& section, std::size_t max_triangles) {
-  const Extent extent = extent_of(mesh);
-  std::vector<Tet> kept;
-  std::vector<std::uint8_t> levels;
-  const auto is_kept = [&](const Tet& tet) {
-    if (section.axis < 0) return true;
-    const auto a = section.axis;
-    float sum = 0.0f;
-    for (const std::uint32_t v : tet) sum += mesh.vertices[v][a];
-    const auto at = static_cast<float>(section.at);
-    return 0.25f * sum < extent.low[a] + at * (extent.high[a] - extent.low[a]);
-  };
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    if (!is_kept(mesh.tets[t])) continue;
-    kept.push_back(mesh.tets[t]);
-    levels.push_back(mesh.levels[t]);
-  }
-  std::vector<std::uint8_t> on_surface(mesh.vertices.size(), 0);
-  for (const tissue::Triangle& triangle : mesh.surface) {
-    for (const std::uint32_t v : triangle) on_surface[v] = 1;
-  }
-  DisplayMesh display;
-  const tissue::FaceTopology faces = tissue::face_topology(kept, mesh.vertices.size());
-  for (std::size_t t = 0; t < kept.size(); ++t) {
-    for (int f = 0; f < 4; ++f) {
-      if (faces.face_tets[faces.tet_faces[t][f]][1] != tissue::kNoTet) continue;
-      const auto& c = tissue::kOutwardFaces[f];
-      const tissue::Triangle corners = {kept[t][c[0]], kept[t][c[1]], kept[t][c[2]]};
-      const bool outer =
-          on_surface[corners[0]] + on_surface[corners[1]] + on_surface[corners[2]] == 3;
-      (outer ? display.hull : display.cut).push_back({corners, levels[t]});
-    }
-  }
+  const OpenedMesh::Faces seen = OpenedMesh(mesh).faces(section);
+  const Extent extent = extent_of(mesh.vertices);
+  DisplayMesh display{with_levels(seen.hull, mesh), with_levels(seen.cut, mesh)};
   display.cut = thinned(display.cut, mesh, extent, max_triangles * 7 / 10);
   display.hull = thinned(display.hull, mesh, extent, max_triangles - display.cut.size());
   return display;

@@ -1,23 +1,10 @@
 #pragma once
 
-#include "tissue/base/tet_mesh.h"
+#include "ros/section.h"
 
-#include <string>
 #include <vector>
 
 namespace tissue_ros {
-
-/// Where a mesh is cut open to show its inside: whole tets with their centroid below the plane
-/// stay.
-struct Section {
-  /// 0, 1, 2 for x, y, z; −1 for no section.
-  int axis = 1;
-  /// As a fraction of the mesh's extent along the axis.
-  double at = 0.5;
-};
-
-/// From the parameters; "none" or an axis that is none leaves the mesh whole.
-Section section_from(const std::string& axis, double at);
 
 /// The part of a mesh that is drawn: triangles between the mesh's own vertices, so that they move
 /// with them.

@@ -1,5 +1,7 @@
 #include "ros/markers.h"
 
+#include "ros/colours.h"
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -9,21 +11,13 @@ namespace {
 
 using visualization_msgs::Marker;
 
-std_msgs::ColorRGBA colour(float r, float g, float b) {
+std_msgs::ColorRGBA opaque(const Colour& colour) {
   std_msgs::ColorRGBA result;
-  result.r = r;
-  result.g = g;
-  result.b = b;
+  result.r = colour[0];
+  result.g = colour[1];
+  result.b = colour[2];
   result.a = 1.0f;
   return result;
-}
-
-std_msgs::ColorRGBA level_colour(int level) {
-  if (level == 0) return colour(0.86f, 0.13f, 0.13f);
-  if (level == 1) return colour(0.20f, 0.70f, 0.25f);
-  if (level == 2) return colour(0.22f, 0.38f, 0.90f);
-  const float light = std::min(1.0f, 0.45f + 0.15f * static_cast<float>(level - 3));
-  return colour(light, 0.75f, 1.0f);
 }
 
 geometry_msgs::Point point(const tissue::Vec3& place) {
@@ -43,7 +37,7 @@ Marker empty_marker(const std::string& frame_id, const std::string& name, int ty
   marker.action = Marker::ADD;
   marker.pose.orientation.w = 1.0;
   marker.scale.x = marker.scale.y = marker.scale.z = 1.0;
-  marker.color = colour(1.0f, 1.0f, 1.0f);
+  marker.color = opaque({1.0f, 1.0f, 1.0f});
   return marker;
 }
 
@@ -58,14 +52,14 @@ visualization_msgs::MarkerArray level_markers(const DisplayMesh& display, const 
       if (found == by_level.end()) {
         Marker marker =
             empty_marker(frame_id, "level_" + std::to_string(face.level), Marker::TRIANGLE_LIST);
-        marker.color = level_colour(face.level);
+        marker.color = opaque(level_colour(face.level));
         found = by_level.emplace(face.level, std::move(marker)).first;
       }
       for (const std::uint32_t v : face.corners) found->second.points.push_back(point(place(v)));
     }
   }
   Marker edges = empty_marker(frame_id, "edges", Marker::LINE_LIST);
-  edges.color = colour(0.05f, 0.05f, 0.05f);
+  edges.color = opaque({0.05f, 0.05f, 0.05f});
   edges.scale.x = 0.0002;
   std::set<tissue::Edge> seen;
   for (const DisplayMesh::Face& face : display.cut) {
@@ -92,7 +86,7 @@ visualization_msgs::MarkerArray density_markers(const DisplayMesh& display,
       for (const std::uint32_t v : face.corners) {
         const float share = (mesh.densities[v] - *low) / range;
         marker.points.push_back(point(mesh.vertices[v].cast<double>()));
-        marker.colors.push_back(colour(share, 0.15f + 0.75f * share * share, 0.35f * (1 - share)));
+        marker.colors.push_back(opaque(share_colour(share)));
       }
     }
   }
@@ -114,7 +108,7 @@ visualization_msgs::Marker ball_marker(const std::string& name, const tissue::Ve
   Marker marker = empty_marker(frame_id, name, Marker::SPHERE);
   marker.pose.position = point(position);
   marker.scale.x = marker.scale.y = marker.scale.z = 2.0 * radius;
-  marker.color = colour(1.0f, 0.85f, 0.1f);
+  marker.color = opaque({1.0f, 0.85f, 0.1f});
   marker.color.a = opacity;
   return marker;
 }

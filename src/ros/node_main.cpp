@@ -2,13 +2,17 @@
 
 #include "ros/guarded.h"
 #include "ros/master_watch.h"
+#include "ros/parameters_text.h"
 
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <sstream>
 
 namespace tissue_ros {
 namespace {
@@ -18,10 +22,35 @@ volatile std::sig_atomic_t is_asked_to_end = 0;
 // roslaunch starts nodes and a master at once.
 constexpr double kMasterPatience = 10.0;
 
+bool asks_for_help(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](const char* argument) {
+    return std::strcmp(argument, "--help") == 0 || std::strcmp(argument, "-h") == 0;
+  });
+}
+
+void show(const NodeHelp& help) {
+  std::printf(
+      "%s [SETTINGS.yaml ...] [_PARAMETER:=VALUE ...] [TOPIC:=TOPIC ...]\n%s\n\nexample: %s\n\n"
+      "Parameters with their defaults, as in config/parameters.yaml:\n",
+      help.name, help.about, help.example);
+  std::istringstream lines(kParametersText);
+  bool is_ours = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_parameter = line.compare(0, 2, "  ") == 0;
+    if (!is_parameter) is_ours = line == std::string(help.name) + ":";
+    if (is_parameter && is_ours) std::puts(line.c_str());
+  }
+}
+
 }  // namespace
 
-int run_process(int argc, char** argv, const char* name,
+int run_process(int argc, char** argv, const NodeHelp& help,
                 const std::function<EndNode(const std::vector<std::string>& files)>& make) {
+  if (asks_for_help(argc, argv)) {
+    show(help);
+    return 0;
+  }
+  const char* const name = help.name;
   const auto end = [](int) { is_asked_to_end = 1; };
   std::signal(SIGINT, end);
   std::signal(SIGTERM, end);

@@ -105,7 +105,10 @@ po::options_description mesh_volume_options() {
   const auto number = [&](double value) {
     return po::value<std::string>()->default_value(text(value));
   };
-  po::options_description options("mesh_volume VOLUME [options] -o OUT.vtu");
+  po::options_description options(
+      "mesh_volume VOLUME [options] -o OUT.vtu\n"
+      "Makes a tetrahedral mesh of an organ in a CT or MR volume.\n"
+      "example: mesh_volume data/ch2bet.nii.gz --iso 20 --tetrahedra 100000 -o brain.vtu\n");
   const auto add = [&](const char* name, const po::value_semantic* value, const char* help) {
     options.add_options()(name, value, help);
   };

@@ -158,6 +158,26 @@ TEST(Convert, ACloudHoldsEveryVertexInOrder) {
   EXPECT_NEAR(point[5], 0.005f, 1e-7f);
 }
 
+TEST(Convert, X5ACloudIsReadAsFarAsItSaysTheTruth) {
+  const tissue::TetMesh mesh = small_mesh();
+  const tissue::Body body = tissue::body_of(mesh);
+  const sensor_msgs::PointCloud2 cloud = cloud_message(body, rest_state(body), vertex_levels(mesh));
+  EXPECT_EQ(places_in(cloud), mesh.vertices);
+  const auto code = [&](const auto& change) {
+    sensor_msgs::PointCloud2 bad = cloud;
+    change(bad);
+    const std::string sentence = refusal([&] { places_in(bad); });
+    return sentence.substr(0, sentence.find(':'));
+  };
+  EXPECT_EQ(code([](auto& bad) { ++bad.width; }), "E_SIZE_MISMATCH");
+  EXPECT_EQ(code([](auto& bad) { bad.width = bad.height = 4294967295u; }), "E_SIZE_MISMATCH");
+  EXPECT_EQ(code([](auto& bad) { bad.point_step = 0; }), "E_ENCODING");
+  EXPECT_EQ(code([](auto& bad) { bad.fields[2].datatype = 8; }), "E_ENCODING");
+  EXPECT_EQ(code([](auto& bad) { bad.fields.clear(); }), "E_ENCODING");
+  EXPECT_EQ(code([](auto& bad) { std::fill(bad.data.begin(), bad.data.end(), 255); }),
+            "E_NONFINITE");
+}
+
 TEST(PrepareVolume, NamesTheParameterThatIsWrong) {
   VolumeNodeParameters good;
   good.file = std::string(TISSUE_SOURCE_DIR) + "/data/ch2bet.nii.gz";
