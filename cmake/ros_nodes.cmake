@@ -34,6 +34,8 @@ add_library(tissue_ros
   src/ros/tool_listener.cpp
   src/ros/tool_path_node.cpp
   src/ros/volume_node.cpp)
+# Its headers are for the nodes here, and are not installed.
+#catkin_lint: ignore_once EXTERNAL_INTERFACE_PATH
 target_include_directories(tissue_ros PUBLIC src SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
 target_link_libraries(tissue_ros PUBLIC
   tissue_study tissue_triangle_surface tissue_mesh_file tissue_point_file

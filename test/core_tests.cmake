@@ -51,7 +51,7 @@ tissue_test(test_fuzz_corpus LIBRARIES tissue_field tissue_mesh_file tissue_simu
 option(TISSUE_FUZZ "Build the fuzzer, with clang" OFF)
 if(TISSUE_FUZZ)
   # Without ITK, whose headers refuse clang here.
-  add_executable(fuzz fuzz/fuzz.cpp fuzz/targets.cpp ${CMAKE_SOURCE_DIR}/src/tissue/field/volume.cpp)
+  add_executable(fuzz EXCLUDE_FROM_ALL fuzz/fuzz.cpp fuzz/targets.cpp ${CMAKE_SOURCE_DIR}/src/tissue/field/volume.cpp)
   target_include_directories(fuzz PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
   target_link_libraries(fuzz tissue_mesh_file tissue_simulate)
   target_link_options(fuzz PRIVATE -fsanitize=fuzzer)

@@ -9,6 +9,7 @@ from soft_tissue_sim.msg import Result, SimulationStatus, Volume
 from soft_tissue_sim.srv import BuildMesh
 
 from ball_volume import ball, request
+from ros_world import wait_for
 
 
 class DeformerCase(unittest.TestCase):
@@ -65,7 +66,4 @@ class DeformerCase(unittest.TestCase):
         return max(p[3] for p in self.cloud())
 
     def reach(self, condition):
-        for _ in range(100):
-            if condition():
-                return
-        self.fail("what was waited for never came")
+        wait_for(condition, 60)

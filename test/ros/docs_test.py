@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Every command of the tutorials runs, in a folder that has what a clone has: blocks ```bash one after the other, blocks
-```bash terminal beside them until the end of the page. And no page points to what is not there."""
+```sh beside them, in terminals of their own, until the end of the page. And no page points to what is not there."""
 import os
 import pathlib
 import re
@@ -13,7 +13,7 @@ import rostest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
-BLOCK = re.compile(r"^```bash( terminal)?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"^```(bash|sh)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\[[^\]]*\]\(([^)#\s]+)[^)]*\)")
 
 
@@ -34,12 +34,12 @@ class Docs(unittest.TestCase):
         server, display = own_display()
         self.addCleanup(server.wait)
         self.addCleanup(server.terminate)
-        env = dict(os.environ, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1")
+        env = dict(os.environ, ROS_HOME=str(folder / ".ros"), HOME=str(folder), DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1", QT_X11_NO_MITSHM="1")
         blocks = BLOCK.findall((ROOT / "docs" / name).read_text())
         self.assertGreater(len(blocks), 3)
-        for number, (beside, commands) in enumerate(blocks):
+        for number, (kind, commands) in enumerate(blocks):
             shell = ["bash", "-ec", ". devel/setup.bash\n" + commands]
-            if beside:
+            if kind == "sh":
                 log = open(folder / f"terminal_{number}.log", "w")
                 process = subprocess.Popen(shell, cwd=folder, env=env, stdout=log, stderr=log, start_new_session=True)
                 self.addCleanup(self.end, process, commands, log.name)
