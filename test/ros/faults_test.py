@@ -9,7 +9,7 @@ import unittest
 import rospkg
 import rostest
 
-from ros_world import World, figure, log_of, resident_kilobytes, wait_for
+from ros_world import World, figure, log_of, program, resident_kilobytes, wait_for
 
 BUILD = dict(iso_value=20.0, initial_tetrahedra=2000, level_sections=2, smooth_levels=2)
 HUGE = {**BUILD, "initial_tetrahedra": 3000000}
@@ -214,8 +214,8 @@ class Faults(unittest.TestCase):
             subprocess.run(["rosparam", "delete", "/wrong"], env=self.world.env, capture_output=True)
 
     def test_5_F8_X2_where_memory_ends_the_request_fails_and_the_node_serves(self):
-        limited = self.world.start("bash", "-c", "ulimit -v 1500000; exec rosrun soft_tissue_sim mesher_node "
-                                   "__name:=limited mesh:=/other_mesh _max_tetrahedra:=1000000000")
+        limited = self.world.start("bash", "-c", "ulimit -v 1500000; exec " + program("mesher_node") +
+                                   " __name:=limited mesh:=/other_mesh _max_tetrahedra:=1000000000")
         wait_for(lambda: "took a volume" in log_of(limited), 30)
         code, sentence = self.world.call("/limited/build_mesh", "BuildMesh",
                                          **{**HUGE, "initial_tetrahedra": 8000000, "level_sections": 3})

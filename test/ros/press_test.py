@@ -10,6 +10,7 @@ from soft_tissue_sim.msg import SimulationStatus
 
 from ball_volume import CENTRE, RADIUS
 from deformer_client import DeformerCase
+from ros_world import program
 
 CENTRE_M = CENTRE * 1e-3
 FINGER = 0.004
@@ -85,7 +86,7 @@ class Press(DeformerCase):
         dropped = self.status().dropped_poses
         rospy.set_param("other", {"tool": "finger", "kind": "line", "from": [CENTRE_M, CENTRE_M, 0.05],
                                   "to": [CENTRE_M, CENTRE_M, 0.06]})
-        other = subprocess.Popen(["rosrun", "soft_tissue_sim", "tool_path_node", "__name:=other"])
+        other = subprocess.Popen([program("tool_path_node"), "__name:=other"])
         try:
             self.reach(lambda: self.status().dropped_poses > dropped + 10)
             self.assertGreater(self.largest(), 0.001)

@@ -9,7 +9,6 @@ import tempfile
 import rosbag
 import rospy
 import rostest
-from roslib.packages import find_node
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from sensor_msgs.msg import JointState, PointCloud2
 from soft_tissue_sim.msg import Result
@@ -17,6 +16,7 @@ from soft_tissue_sim.srv import MeshFile
 
 from ball_volume import CENTRE, RADIUS
 from deformer_client import DeformerCase
+from ros_world import program
 
 CENTRE_M, RADIUS_M = CENTRE * 1e-3, RADIUS * 1e-3
 # Namespaces: a node, and a nodelet.
@@ -69,7 +69,7 @@ class Replay(DeformerCase):
 
     def by_program(self, threads):
         clouds = os.path.join(self.folder, "clouds.bag")
-        subprocess.run([*find_node("soft_tissue_sim", "run_scene"), os.path.join(HERE, "replay_scene.yaml"), "--mesh",
+        subprocess.run([program("run_scene"), os.path.join(HERE, "replay_scene.yaml"), "--mesh",
                         self.mesh, "--bag", self.bag, "--cloud-bag", clouds, "--threads", str(threads), "-o",
                         os.path.join(self.folder, "end.vtu")], check=True)
         with rosbag.Bag(clouds) as bag:

@@ -10,6 +10,7 @@ import time
 import xmlrpc.client
 
 import rosgraph
+from roslib.packages import find_node
 
 HEARING = """
 import json, sys, rospy
@@ -104,7 +105,7 @@ class World:
         return self.start("roslaunch", "soft_tissue_sim", file, *arguments)
 
     def node(self, kind, *arguments, **options):
-        return self.start("rosrun", "soft_tissue_sim", kind, *arguments, **options)
+        return self.start(program(kind), *arguments, **options)
 
     def process_of(self, node):
         """Its process id; None while it is not there."""
@@ -168,6 +169,11 @@ def figure(case, what, value):
     if "TISSUE_FIGURES" in os.environ:
         with open(os.environ["TISSUE_FIGURES"], "a") as file:
             print(json.dumps([case, what, value]), file=file)
+
+
+def program(name):
+    """Where one of the package's programs is, as roslaunch finds it; rosrun passes over what lies below build/."""
+    return find_node("soft_tissue_sim", name)[0]
 
 
 def wait_for(condition, seconds):
