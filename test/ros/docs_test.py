@@ -84,6 +84,14 @@ class Docs(unittest.TestCase):
             self.assertEqual(done.returncode, 0, program.name)
             self.assertRegex(done.stdout, rf"(?s)^(usage: )?{program.name} .*\bexample: .*{program.name} ", program.name)
 
+    def test_doxygen_and_catkin_lint_have_nothing_to_say(self):
+        pages = (ROOT / "docs" / "Doxyfile").read_text() + f"OUTPUT_DIRECTORY = {tempfile.mkdtemp()}\n"
+        for command in (["doxygen", "-"], ["catkin_lint", "-q", "--offline", str(ROOT)]):
+            done = subprocess.run(command, input=pages, cwd=ROOT, capture_output=True, text=True, timeout=120)
+            said = [line for line in (done.stdout + done.stderr).splitlines()
+                    if not line.startswith("catkin_lint: cannot load rosdep") and "unknown dependencies" not in line]
+            self.assertEqual((done.returncode, said), (0, []))
+
     def test_pages_point_to_what_is_there(self):
         for page in PAGES:
             for target in LINK.findall(page.read_text()):

@@ -75,7 +75,7 @@ Legend::~Legend() {
 }
 
 void Legend::forget_texture() {
-  if (texture_) Ogre::TextureManager::getSingleton().remove(texture_->getHandle());
+  if (texture_.get() != nullptr) Ogre::TextureManager::getSingleton().remove(texture_->getHandle());
 }
 
 void Legend::show(const std::string& title, const std::vector<Line>& lines) {
