@@ -147,18 +147,24 @@ class Panel:
         camera.SetParallelScale(height / 2 / 0.8)
 
 
+# All pictures come from one window: with one each, and those before left to Python's garbage collector, OpenGL has
+# ended the program now and then.
+_window = vtk.vtkRenderWindow()
+_window.SetOffScreenRendering(1)
+
+
 def write_picture(panels, size, path):
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetSize(*size)
+    _window.SetSize(*size)
     for panel in panels:
-        window.AddRenderer(panel.renderer)
-    window.Render()
+        _window.AddRenderer(panel.renderer)
+    _window.Render()
     grab = vtk.vtkWindowToImageFilter()
-    grab.SetInput(window)
+    grab.SetInput(_window)
     grab.ReadFrontBufferOff()
     writer = vtk.vtkPNGWriter()
     writer.SetFileName(str(path))
     writer.SetInputConnection(grab.GetOutputPort())
     writer.Write()
+    for panel in panels:
+        _window.RemoveRenderer(panel.renderer)
     print(path)
