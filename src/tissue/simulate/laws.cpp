@@ -139,8 +139,9 @@ Respond law_of(Constitution constitution) {
   switch (constitution) {
     case Constitution::kLinear: return linear;
     case Constitution::kCorotational: return corotational;
-    default: return neo_hookean;
+    case Constitution::kNeoHookean: break;
   }
+  return neo_hookean;
 }
 
 }  // namespace tissue

@@ -13,8 +13,12 @@ Constitution constitution_of(Model model) {
   switch (model) {
     case Model::kLinear: return Constitution::kLinear;
     case Model::kCorotational: return Constitution::kCorotational;
-    default: return Constitution::kNeoHookean;
+    // What has no law of its own does not ask for one.
+    case Model::kClosedForm:
+    case Model::kMassSpring:
+    case Model::kNeoHookean: break;
   }
+  return Constitution::kNeoHookean;
 }
 
 std::unique_ptr<Equilibrium> equilibrium_for(const SceneDescription& scene,
