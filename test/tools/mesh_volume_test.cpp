@@ -39,7 +39,9 @@ TEST(MeshVolume, WritesAMeshAndItsFigures) {
   EXPECT_EQ(stats["stages"].front()["name"], "read");
   EXPECT_EQ(stats["stages"].back()["name"], "write");
   // Sanitizers bring their own allocator, which is not counted.
-  if (!tissue_test::kSanitized) EXPECT_GT(stats["peak_bytes"], 16 * stats["tetrahedra"].get<std::uint64_t>());
+  if (!tissue_test::kSanitized) {
+    EXPECT_GT(stats["peak_bytes"], 16 * stats["tetrahedra"].get<std::uint64_t>());
+  }
   std::ifstream file(vtu);
   std::string head(4096, '\0');
   file.read(head.data(), static_cast<std::streamsize>(head.size()));
