@@ -60,7 +60,6 @@ bool SceneWorker::put(const tissue::ToolSample& sample) {
         return one.tool == sample.tool && bool(one.pose) == bool(sample.pose);
       });
       if (old != samples.end()) samples.erase(old);
-      inbox_.lost[sample.tool] = 0;
     }
     if (samples.size() >= kMostWaiting) return false;
     samples.push_back(sample);
@@ -72,6 +71,11 @@ bool SceneWorker::put(const tissue::ToolSample& sample) {
 void SceneWorker::lose(std::size_t tool) {
   {
     const std::lock_guard<std::mutex> lock(inbox_mutex_);
+    // Where it was before is of no use any more.
+    std::deque<tissue::ToolSample>& samples = inbox_.samples;
+    samples.erase(std::remove_if(samples.begin(), samples.end(),
+                                 [&](const auto& one) { return one.tool == tool && one.pose; }),
+                  samples.end());
     inbox_.lost[tool] = 1;
     inbox_.has_lost = true;
   }
@@ -208,28 +212,23 @@ void SceneWorker::replay(const Inbox& inbox) {
 
 // One step to the newest pose of each tool; without any, tissue that was let go relaxes.
 void SceneWorker::follow(const Inbox& inbox) {
-  tissue::ToolPoses tools = tools_;
   std::int64_t stamp = 0;
   for (const tissue::ToolSample& sample : inbox.samples) {
     if (sample.closed) closed_[sample.tool] = sample.closed;
     if (sample.pose) stamp = std::max(stamp, sample.stamp);
   }
-  if (stamp != 0) {
-    start_again_if_behind(stamp);
-    tools = tools_;
-  }
+  if (stamp != 0) start_again_if_behind(stamp);
+  tissue::ToolPoses tools = tools_;
   bool loses = false;
   for (std::size_t tool = 0; tool < tools.size(); ++tool) {
     if (inbox.lost[tool] == 0 || !tools[tool]) continue;
     tools[tool].reset();
     loses = true;
   }
-  const double relaxing = 1.0 / options_.playback.cloud_rate;
-  if (stamp == 0) {
-    // The first step without a tool lets go; the others relax.
-    if (loses || (!any_is_there(tools) && scene_.recovering())) step(tools, relaxing);
-    return;
-  }
+  // The first step without a tool lets go, also where it has come back by now; the others relax.
+  const bool relaxes = stamp == 0 && !any_is_there(tools) && scene_.recovering();
+  if (loses || relaxes) step(tools, 1.0 / options_.playback.cloud_rate);
+  if (stamp == 0) return;
   for (const tissue::ToolSample& sample : inbox.samples) {
     if (!sample.pose) continue;
     tools[sample.tool] = sample.pose;

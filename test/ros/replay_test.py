@@ -16,7 +16,7 @@ from soft_tissue_sim.srv import MeshFile
 
 from ball_volume import CENTRE, RADIUS
 from deformer_client import DeformerCase
-from ros_world import program
+from ros_world import program, wait_for
 
 CENTRE_M, RADIUS_M = CENTRE * 1e-3, RADIUS * 1e-3
 # Namespaces: a node, and a nodelet.
@@ -86,10 +86,7 @@ class Replay(DeformerCase):
         # Both listen before the first pose comes: a moment for the second to connect, too.
         subprocess.run(["rosbag", "play", "--quiet", "--wait-for-subscribers", "--delay", "0.5", "--rate", str(rate),
                         self.bag], check=True, stdout=subprocess.DEVNULL)
-        for _ in range(200):
-            if all(c and c[-1][0] == last for c in clouds.values()):
-                break
-            rospy.rostime.wallsleep(0.05)
+        wait_for(lambda: all(c and c[-1][0] == last for c in clouds.values()), 120)
         for subscriber in subscribers:
             subscriber.unregister()
         return clouds

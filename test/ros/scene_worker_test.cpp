@@ -60,6 +60,29 @@ TEST(SceneWorker, TheNewestPoseWinsAndALostToolLetsGo) {
   wait_for([&] { return farthest(worker) < 1e-6; });
 }
 
+TEST(SceneWorker, P9_AToolThatFallsSilentDuringALongStepLetsGoAfterIt) {
+  SceneWorker worker(scene(), {}, {}, {});
+  worker.put(finger(0, -0.001));
+  wait_for([&] { return worker.progress()->tools[0].has_value(); });
+  // As while a step runs: its last pose and that it fell silent wait together.
+  worker.pause(true);
+  worker.put(finger(1, -0.001));
+  worker.lose(0);
+  worker.pause(false);
+  wait_for([&] { return worker.progress()->steps >= 3; });
+  EXPECT_FALSE(worker.progress()->tools[0].has_value());
+  // One that has come back by then has let go in between.
+  worker.put(finger(2, -0.001));
+  wait_for([&] { return worker.progress()->tools[0].has_value(); });
+  worker.pause(true);
+  worker.lose(0);
+  worker.put(finger(3, -0.001));
+  worker.pause(false);
+  wait_for([&] { return worker.progress()->stamp == finger(3, 0.0).stamp; });
+  EXPECT_TRUE(worker.progress()->tools[0].has_value());
+  EXPECT_EQ(worker.progress()->steps, 6u);
+}
+
 TEST(SceneWorker, AReplayUsesEveryPoseAndTellsWhenCloudsAreDue) {
   std::vector<std::int64_t> clouds;
   SceneWorkerOptions options;
