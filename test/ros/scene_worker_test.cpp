@@ -73,7 +73,8 @@ TEST(SceneWorker, P9_AToolThatFallsSilentDuringALongStepLetsGoAfterIt) {
   EXPECT_FALSE(worker.progress()->tools[0].has_value());
   // One that has come back by then has let go in between.
   worker.put(finger(2, -0.001));
-  wait_for([&] { return worker.progress()->tools[0].has_value(); });
+  wait_for([&] { return worker.progress()->stamp == finger(2, 0.0).stamp; });
+  EXPECT_EQ(worker.progress()->steps, 4u);
   worker.pause(true);
   worker.lose(0);
   worker.put(finger(3, -0.001));
