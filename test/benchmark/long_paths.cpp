@@ -103,13 +103,8 @@ struct Case {
 Case small_block() {
   Body block = tissue_test::kuhn_block({3, 3, 3}, Vec3::Constant(0.045));
   block.densities.assign(block.rest.size(), 60.0f);
-  block.tet_densities.clear();
-  for (const Tet& tet : block.tets) {
-    Vec3 centre = Vec3::Zero();
-    for (const std::uint32_t v : tet) centre += 0.25 * block.rest[v].cast<double>();
-    const bool is_core = (centre - Vec3::Constant(0.0225)).cwiseAbs().maxCoeff() < 0.0075;
-    block.tet_densities.push_back(is_core ? 255.0f : 60.0f);
-  }
+  // The cube in the middle.
+  block = tissue_test::with_core(std::move(block), Vec3::Constant(0.0225), 0.008, 255.0f, 60.0f);
   return {"uniform block", std::make_shared<const Body>(block), Vec3(0.015, 0.015, 0.045)};
 }
 

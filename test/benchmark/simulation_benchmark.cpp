@@ -76,10 +76,8 @@ tissue::Body beam_body(int across, int halvings) {
 // often the mesh was halved to become as fine as it is.
 void implicit_step(benchmark::State& state) {
   tissue::Body body = beam_body(static_cast<int>(state.range(0)), static_cast<int>(state.range(3)));
-  for (std::size_t t = 0; state.range(2) != 0 && t < body.tets.size(); ++t) {
-    tissue::Vec3 centroid = tissue::Vec3::Zero();
-    for (const std::uint32_t v : body.tets[t]) centroid += 0.25 * body.rest[v].cast<double>();
-    if ((centroid - tissue::Vec3(0.1, 0.05, 0.05)).norm() < 0.03) body.tet_densities[t] = 2.0f;
+  if (state.range(2) != 0) {
+    body = tissue_test::with_core(std::move(body), {0.1, 0.05, 0.05}, 0.03, 2.0f, 1.0f);
   }
   dynamic_steps(state, std::move(body),
                 "model: corotational\nelement_order: " + std::to_string(state.range(1)) + "\n",

@@ -17,14 +17,8 @@ using tissue_test::Problem;
 
 Body halved_block() { return tissue_test::kuhn_block({16, 8, 8}, {0.2, 0.1, 0.1}, 2); }
 
-// Young's modulus by whether a tet is in the body's middle.
 Body with_inclusion(Body body, const Vec3& centre, double radius) {
-  for (std::size_t t = 0; t < body.tets.size(); ++t) {
-    Vec3 centroid = Vec3::Zero();
-    for (const std::uint32_t v : body.tets[t]) centroid += 0.25 * body.rest[v].cast<double>();
-    body.tet_densities[t] = (centroid - centre).norm() < radius ? 2.0f : 1.0f;
-  }
-  return body;
+  return tissue_test::with_core(std::move(body), centre, radius, 2.0f, 1.0f);
 }
 
 // Both solvers on the stiffness of a bent body with random forces; half the coordinates of one

@@ -14,16 +14,12 @@ using tissue_test::refusal;
 
 // A block of 0.1 m with a ball of 30 mm radius of dense tissue in its middle.
 std::shared_ptr<const Body> block(int cells) {
-  Body body = tissue_test::kuhn_block({cells, cells, cells}, {0.1, 0.1, 0.1}, 1);
-  const Vec3f middle(0.05f, 0.05f, 0.05f);
+  Body body =
+      tissue_test::with_core(tissue_test::kuhn_block({cells, cells, cells}, {0.1, 0.1, 0.1}, 1),
+                             Vec3::Constant(0.05), 0.03, 255.0f, 60.0f);
   for (std::size_t t = 0; t < body.tets.size(); ++t) {
-    Vec3f centroid = Vec3f::Zero();
-    for (const std::uint32_t v : body.tets[t]) centroid += 0.25f * body.rest[v];
-    const bool is_dense = (centroid - middle).norm() < 0.03f;
-    body.tet_densities[t] = is_dense ? 255.0f : 60.0f;
-    for (const std::uint32_t v : body.tets[t]) {
-      if (is_dense) body.densities[v] = 255.0f;
-    }
+    if (body.tet_densities[t] < 255.0f) continue;
+    for (const std::uint32_t v : body.tets[t]) body.densities[v] = 255.0f;
   }
   return std::make_shared<Body>(body);
 }

@@ -65,6 +65,20 @@ Body kuhn_block(const std::array<int, 3>& cells, const Vec3& size, int halvings)
   return body;
 }
 
+Vec3 centroid(const Body& body, std::size_t tet) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::uint32_t v : body.tets[tet]) sum += 0.25 * body.rest[v].cast<double>();
+  return sum;
+}
+
+Body with_core(Body body, const Vec3& centre, double radius, float inside, float outside) {
+  body.tet_densities.resize(body.tets.size());
+  for (std::size_t t = 0; t < body.tets.size(); ++t) {
+    body.tet_densities[t] = (centroid(body, t) - centre).norm() < radius ? inside : outside;
+  }
+  return body;
+}
+
 TetMesh refined_ball(double spacing, int sections) {
   constexpr std::uint32_t kSize = 72;
   constexpr double kCentre = 0.5 * (kSize - 1);
@@ -83,13 +97,7 @@ TetMesh refined_ball(double spacing, int sections) {
 }
 
 Body ball_body(const TetMesh& mesh, double radius, float inside, float outside) {
-  Body body = body_of(mesh);
-  for (std::size_t t = 0; t < body.tets.size(); ++t) {
-    Vec3 centroid = Vec3::Zero();
-    for (const std::uint32_t v : body.tets[t]) centroid += 0.25 * body.rest[v].cast<double>();
-    body.tet_densities[t] = centroid.norm() < radius ? inside : outside;
-  }
-  return body;
+  return with_core(body_of(mesh), Vec3::Zero(), radius, inside, outside);
 }
 
 std::vector<std::uint8_t> nodes_where(const std::vector<Vec3>& places,

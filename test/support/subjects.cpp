@@ -14,14 +14,8 @@ using namespace tissue;
 constexpr double kBlock = 0.04;
 
 Body block() {
-  Body body = kuhn_block({4, 4, 4}, Vec3::Constant(kBlock));
-  for (std::size_t t = 0; t < body.tets.size(); ++t) {
-    Vec3 centroid = Vec3::Zero();
-    for (const std::uint32_t v : body.tets[t]) centroid += 0.25 * body.rest[v].cast<double>();
-    if ((centroid - Vec3::Constant(0.5 * kBlock)).norm() < 0.3 * kBlock)
-      body.tet_densities[t] = 2.0f;
-  }
-  return body;
+  return with_core(kuhn_block({4, 4, 4}, Vec3::Constant(kBlock)), Vec3::Constant(0.5 * kBlock),
+                   0.3 * kBlock, 2.0f, 1.0f);
 }
 
 Subject block_subject(Body body, const char* name) {
