@@ -21,6 +21,7 @@ add_library(tissue_ros
   src/ros/device_adapter_node.cpp
   src/ros/device_messages.cpp
   src/ros/display_mesh.cpp
+  src/ros/face_corners.cpp
   src/ros/kept_state.cpp
   src/ros/markers.cpp
   src/ros/master_watch.cpp

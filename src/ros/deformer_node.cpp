@@ -120,6 +120,7 @@ std::unique_ptr<Simulation> DeformerNode::simulation_of(std::shared_ptr<const ti
 }
 
 void DeformerNode::begin(std::unique_ptr<Simulation> simulation) {
+  if (simulation_) simulation->worker()->pause(simulation_->worker()->is_paused());
   tools_->set_worker(simulation->worker(), simulation->mesh()->frame_id);
   simulation_ = std::move(simulation);
   // The factors of the last mesh lay in the arenas of threads that have ended.

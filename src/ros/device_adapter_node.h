@@ -18,12 +18,10 @@ namespace tissue_ros {
 /// takes for a force of `<tool>/servo_cf`, in the device's frame. The force is zero at the end, and
 /// when none comes for `force_timeout`, since drivers hold the last one for ever.
 ///
-/// | device | from | to |
-/// |---|---|---|
-/// | omni | `<name>/state` and `<name>/button` of omni_msgs | `<name>/force_feedback` of omni_msgs
-/// | | geomagic | – (PoseStamped and Joy need no adapter) | `<name>/force_feedback` of
-/// geomagic_control | | crtk | – | `<name>/servo_cf` WrenchStamped | | openigtlink |
-/// `IGTL_TRANSFORM_IN` of ros_igtl_bridge | – |
+/// - omni: from `<name>/state` and `<name>/button`, to `<name>/force_feedback`, all of omni_msgs
+/// - geomagic: to `<name>/force_feedback` of geomagic_control; PoseStamped and Joy need no adapter
+/// - crtk: to `<name>/servo_cf`, a WrenchStamped
+/// - openigtlink: from `IGTL_TRANSFORM_IN` of ros_igtl_bridge
 class DeviceAdapterNode {
  public:
   /// Throws tissue::InputError E_PARAM for an unknown device.

@@ -32,8 +32,6 @@ class DeviceReader {
   /// Of a crtk_msgs/operating_state: whether the device is enabled. Throws as pose().
   bool is_enabled(const AnyMessage& message) const;
 
-  const tissue::ToolDescription& tool() const { return tool_; }
-
  private:
   tissue::ToolDescription tool_;
   std::size_t number_;

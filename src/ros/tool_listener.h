@@ -24,7 +24,7 @@ struct ToolListenerOptions {
 /// feels nothing. Where two drivers move one tool, the first has it until it falls silent.
 class ToolListener {
  public:
-  /// References must outlive this.
+  /// `transforms` must outlive this.
   ToolListener(const ros::NodeHandle& handle, const tissue::SceneDescription& scene,
                const ToolListenerOptions& options, const tf2_ros::Buffer& transforms);
   /// Tools feel nothing any more.

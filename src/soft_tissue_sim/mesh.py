@@ -51,7 +51,7 @@ class Mesh:
         grid.SetPoints(points)
         grid.SetCells(VTK_TETRA, cells)
         grid.GetCellData().AddArray(array(self.levels, "level"))
-        grid.GetCellData().AddArray(array(self.tet_densities, "tet_density"))
+        grid.GetCellData().AddArray(array(self.tet_densities, "density"))
         grid.GetPointData().AddArray(array(self.densities, "density"))
         if positions is not None:
             moved = numpy.asarray(positions, dtype=numpy.float32) - self.vertices

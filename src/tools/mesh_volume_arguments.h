@@ -12,7 +12,7 @@ namespace tissue_tools {
 
 /// What mesh_volume was asked for.
 struct MeshVolumeArguments {
-  std::string volume, mask, surface, output, stats, marching_cubes, quantity, scene;
+  std::string volume, mask, surface, output, stats, marching_cubes, scene;
   std::vector<std::string> paths;
   /// Part of the triangles of marching cubes to keep.
   double decimate = 1.0;

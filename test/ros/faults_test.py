@@ -94,6 +94,8 @@ class Faults(unittest.TestCase):
         self.assertEqual(self.world.call("/deformer_node/pause", "Pause", paused=True)[0], OK)
         self.assertIn("PAUSED", flags())
         self.assertEqual(self.world.call("/deformer_node/reset", "Reset")[0], OK)
+        self.assertEqual(self.world.call(name, "LoadScene", yaml="name: other\nmodel: closed_form")[0], OK)
+        self.assertIn("PAUSED", flags())
         self.assertEqual(self.world.call("/deformer_node/pause", "Pause", paused=False)[0], OK)
         self.assertNotIn("PAUSED", flags())
 

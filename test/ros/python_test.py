@@ -97,6 +97,7 @@ class Python(unittest.TestCase):
         self.assertTrue((vtk_to_numpy(grid.GetPoints().GetData()) == self.mesh.vertices).all())
         self.assertEqual(grid.GetNumberOfCells(), len(self.mesh.tets))
         self.assertTrue((vtk_to_numpy(grid.GetCellData().GetArray("level")) == self.mesh.levels).all())
+        self.assertTrue((vtk_to_numpy(grid.GetCellData().GetArray("density")) == self.mesh.tet_densities).all())
         displacement = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
         self.assertTrue(numpy.allclose(displacement, 0.001, atol=1e-6))
 

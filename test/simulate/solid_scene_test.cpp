@@ -48,6 +48,11 @@ TEST(SolidScene, AGraspedPatchGoesWithTheToolAndTheTissueComesBackWhenItIsReleas
       const StepReport report = scene.step(pulled, 0.01);
       EXPECT_FALSE(report.not_converged) << model << order;
       EXPECT_GT(*report.energy, 0.0);
+      std::size_t moved = 0;
+      for (std::size_t v = 0; v < body->rest.size(); ++v)
+        moved += scene.state().positions[v] != Vec3(body->rest[v].cast<double>());
+      EXPECT_GT(moved, 0u);
+      EXPECT_EQ(report.moved_vertices, moved) << model << order;
       std::size_t gripped = 0;
       for (std::size_t v = 0; v < body->rest.size(); ++v) {
         const Vec3 rest = body->rest[v].cast<double>(), now = scene.state().positions[v];

@@ -30,6 +30,7 @@ ImplicitSurface surface_of_triangles(TriangleSurface surface, const Grid& grid);
 TriangleSurface marching_cubes(const ImplicitSurface& surface);
 
 /// The surface with about `keep` (0 to 1) of its triangles, keeping its topology.
+/// Throws InputError E_PARAM unless 0 < keep <= 1.
 TriangleSurface decimated(const TriangleSurface& surface, double keep);
 
 }  // namespace tissue

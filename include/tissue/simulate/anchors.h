@@ -59,6 +59,7 @@ bool is_bed(const Anchor& anchor);
 struct Bed {
   std::size_t anchor = 0;
   int axis = 2;
+  /// [m]
   double low = 0.0, high = 0.0;
   /// [Pa/m]
   double stiffness = 0.0;

@@ -96,6 +96,7 @@ class Scene {
  public:
   /// Throws InputError E_SCENE for an anchor that holds nothing, E_UNCONSTRAINED for a solid that
   /// is not held, E_PARAM where the material asks for what the body does not have.
+  /// `threads`: 0 for as many as there are.
   Scene(SceneDescription description, std::shared_ptr<const Body> body, int threads = 1);
   ~Scene();
   Scene(Scene&&) noexcept;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "ros/colours.h"
-#include "ros/section.h"
+#include "ros/face_corners.h"
 
 #include <OgreSimpleRenderable.h>
 
@@ -15,11 +15,6 @@ class SceneNode;
 namespace tissue_ros {
 
 /// Triangles between vertices that move, each in its own colour, with or without its edges.
-///
-/// Shading is flat: colour and normal of a triangle are those of its last corner, and so every
-/// triangle has a corner of its own and borrows the other two from others. That is a third of the
-/// corners that triangles with nothing in common would have, of which a renderer without hardware
-/// has to transform each.
 class FaceRenderable : public Ogre::SimpleRenderable {
  public:
   enum class Style { kShaded, kWireframe, kBoth };
@@ -47,8 +42,7 @@ class FaceRenderable : public Ogre::SimpleRenderable {
   Ogre::SceneNode* node_;
   float alpha_ = 1.0f;
   Ogre::MaterialPtr material_;
-  // For each corner that is drawn its vertex; the first are the faces' own, in their order.
-  std::vector<std::uint32_t> corners_;
+  FaceCorners corners_;
   std::vector<SeenFace> faces_;
   Ogre::VertexData vertex_data_;
   Ogre::IndexData index_data_;

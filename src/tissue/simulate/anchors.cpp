@@ -1,12 +1,12 @@
 #include "tissue/simulate/anchors.h"
 
+#include "tissue/base/disjoint_sets.h"
 #include "tissue/base/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 namespace tissue {
 namespace {
@@ -110,20 +110,13 @@ class Holds {
 
 // Numbers the connected parts of a body, each by its lowest vertex.
 std::vector<std::uint32_t> parts_of(const Body& body) {
-  std::vector<std::uint32_t> parent(body.rest.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(body.rest.size());
   for (const Tet& tet : body.tets) {
-    for (int k = 1; k < 4; ++k) {
-      const std::uint32_t a = root(tet[0]), b = root(tet[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int k = 1; k < 4; ++k) sets.unite(tet[0], tet[k]);
   }
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = root(v);
-  return parent;
+  std::vector<std::uint32_t> parts(body.rest.size());
+  for (std::uint32_t v = 0; v < parts.size(); ++v) parts[v] = sets.find(v);
+  return parts;
 }
 
 // How many independent directions the held vertices of a part span: 2 hold it.

@@ -30,7 +30,6 @@ class ClosedFormModel : public DeformationModel {
   StepReport step(const ToolPoses& tools, double dt) override {
     const std::optional<ToolPose>& tool = tools.front();
     StepReport report;
-    report.tool_lost = !tool;
     if (phase_ == Phase::kHeld && must_release(tool)) release();
     if (phase_ == Phase::kRecovering) recover(dt);
     // A tool whose jaw was closed all along does not take hold of what it passes.

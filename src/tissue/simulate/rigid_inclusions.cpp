@@ -1,5 +1,6 @@
 #include "rigid_inclusions.h"
 
+#include "tissue/base/disjoint_sets.h"
 #include "tissue/base/error.h"
 #include "tissue/base/tet_shape.h"
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 namespace tissue {
@@ -19,20 +19,12 @@ RigidInclusions::RigidInclusions(const Body& body, double density_above) {
     throw InputError(ErrorCode::kParam,
                      "rigid_inclusions: the mesh does not say the densities of its tets");
   }
-  std::vector<std::uint32_t> leader(body.rest.size());
-  std::iota(leader.begin(), leader.end(), 0u);
-  const auto leader_of = [&](std::uint32_t v) {
-    while (leader[v] != v) v = leader[v] = leader[leader[v]];
-    return v;
-  };
+  DisjointSets sets(body.rest.size());
   for (std::size_t t = 0; t < body.tets.size(); ++t) {
     if (!(body.tet_densities[t] > density_above)) continue;
     tets.push_back(body.tets[t]);
     tet_numbers.push_back(static_cast<std::uint32_t>(t));
-    for (const std::uint32_t v : body.tets[t]) {
-      const std::uint32_t a = leader_of(v), b = leader_of(body.tets[t][0]);
-      leader[std::max(a, b)] = std::min(a, b);
-    }
+    for (const std::uint32_t v : body.tets[t]) sets.unite(body.tets[t][0], v);
   }
   if (tets.size() == body.tets.size()) {
     throw InputError(ErrorCode::kParam, "rigid_inclusions: density_above " +
@@ -46,7 +38,7 @@ RigidInclusions::RigidInclusions(const Body& body, double density_above) {
   std::vector<std::size_t> number(body.rest.size(), 0);
   for (std::uint32_t v = 0; v < is_rigid.size(); ++v) {
     if (is_rigid[v] == 0) continue;
-    const std::uint32_t first = leader_of(v);
+    const std::uint32_t first = sets.find(v);
     if (first == v) {
       number[v] = vertices.size();
       vertices.emplace_back();

@@ -119,6 +119,8 @@ class SolidModel : public DeformationModel {
     solid_.held().place(tools, state_.positions);
     actions_.set_reached(tools);
     report_.iterations = 0;
+    report_.residual = 0.0;
+    report_.moved_vertices = response_->moved_vertices();
     report_.energy = response_->energy();
     report_.folded = response_->folds(state_.positions);
   }

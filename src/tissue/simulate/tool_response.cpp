@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <algorithm>
+
 namespace tissue {
 namespace {
 
@@ -56,7 +58,19 @@ ToolResponse::ToolResponse(const Body& body, Equilibrium& equilibrium, const Hel
     : base_tools_(std::move(base_tools)),
       shares_(shares_of(held, base_tools_.size())),
       response_(equilibrium, base, unit_motions(held, base, base_tools_), nodes_of(shares_)),
-      watch_(body, base, response_.columns(), groups_of(base_tools_.size())) {}
+      watch_(body, base, response_.columns(), groups_of(base_tools_.size())) {
+  for (std::size_t v = 0; v < body.rest.size(); ++v) {
+    const std::size_t i = 3 * v;
+    const bool at_base =
+        base.segment<3>(static_cast<Eigen::Index>(i)) != body.rest[v].cast<double>();
+    const auto moves = [&](const std::vector<float>& column) {
+      return column[i] != 0.0f || column[i + 1] != 0.0f || column[i + 2] != 0.0f;
+    };
+    moved_at_base_ += at_base;
+    moved_by_tools_ +=
+        at_base || std::any_of(response_.columns().begin(), response_.columns().end(), moves);
+  }
+}
 
 Wrench ToolResponse::wrench(std::size_t tool, const Vec3& centre) const {
   const Eigen::VectorXd positions = response_.watched_positions(amounts_),

@@ -21,6 +21,10 @@ class ToolResponse {
   bool folds(const std::vector<Vec3>& vertices) const {
     return watch_.any_folded(amounts_, vertices);
   }
+  /// Those that are not where the body at rest has them, as far as follow() may have moved them.
+  std::size_t moved_vertices() const {
+    return amounts_.isZero(0.0) ? moved_at_base_ : moved_by_tools_;
+  }
   double energy() const { return response_.energy(amounts_); }
   /// Of the tissue on a tool that holds it, followed last, about `centre`.
   Wrench wrench(std::size_t tool, const Vec3& centre) const;
@@ -31,6 +35,8 @@ class ToolResponse {
   std::vector<std::vector<HeldNodes::Share>> shares_;
   LinearResponse response_;
   FoldWatch watch_;
+  // Counted once: a count at each step would take as long as the step.
+  std::size_t moved_at_base_ = 0, moved_by_tools_ = 0;
   // How each tool has moved since the base: its translation, then R − I column by column.
   Eigen::VectorXd amounts_;
 };
