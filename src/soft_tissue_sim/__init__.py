@@ -9,6 +9,6 @@
 """
 from .mesh import Mesh
 from .organ import Organ, Refused
-from .run import Run, positions_of
+from .run import Run, displacements_of, positions_of
 
-__all__ = ["Mesh", "Organ", "Refused", "Run", "positions_of"]
+__all__ = ["Mesh", "Organ", "Refused", "Run", "displacements_of", "positions_of"]

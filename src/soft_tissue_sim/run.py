@@ -6,8 +6,18 @@ import numpy
 
 def positions_of(cloud):
     """(n, 3) float32 of a PointCloud2 whose first fields are x, y and z, as deformed_cloud's are [m]."""
+    return _floats(cloud, 0, 3)
+
+
+def displacements_of(cloud):
+    """(n,) float32: how far each vertex of a deformed_cloud is from where it is at rest [m]."""
+    offset = next(field.offset for field in cloud.fields if field.name == "displacement")
+    return _floats(cloud, offset, 1)[:, 0]
+
+
+def _floats(cloud, offset, count):
     rows = numpy.frombuffer(cloud.data, dtype=numpy.uint8).reshape(-1, cloud.point_step)
-    return rows[:, :12].copy().view(numpy.float32).reshape(-1, 3)
+    return rows[:, offset:offset + 4 * count].copy().view(numpy.float32).reshape(-1, count)
 
 
 class Run:

@@ -17,12 +17,14 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from sensor_msgs import point_cloud2
 from sensor_msgs.msg import PointCloud2
+from soft_tissue_sim import displacements_of
 from soft_tissue_sim.msg import (BuildMeshAction, BuildMeshActionFeedback, BuildMeshGoal, Result,
                                  SimulationStatus, TetMesh, Volume)
 from soft_tissue_sim.srv import BuildMesh, MeshFile
 from tf2_msgs.msg import TFMessage
 
 from ball_volume import CENTRE, RADIUS, SIZE, ball, request
+from ros_world import wait_for
 
 
 def with_fields(**fields):
@@ -67,13 +69,6 @@ class BadInput(unittest.TestCase):
                 if "rejected" in value.key:
                     cls.rejected[status.name + value.key] = int(value.value)
 
-    def wait_until(self, condition, seconds=30):
-        for _ in range(int(seconds / 0.05)):
-            if condition():
-                return
-            rospy.rostime.wallsleep(0.05)
-        self.fail("what was waited for never came")
-
     def count(self, part):
         return sum(n for key, n in self.rejected.items() if part in key)
 
@@ -99,7 +94,7 @@ class BadInput(unittest.TestCase):
 
     def test_2_V1_to_V17_volumes_are_refused_and_the_last_good_one_stays(self):
         self.volume.publish(ball())
-        self.wait_until(lambda: self.build(request()).result.code == Result.OK)
+        wait_for(lambda: self.build(request()).result.code == Result.OK)
         good = self.good_mesh()
         good_data = ball().data
         floats = struct.pack("<%df" % SIZE**3, *([1.0] * (SIZE**3 - 1)), math.nan)
@@ -121,24 +116,24 @@ class BadInput(unittest.TestCase):
         for name, volume in bad:
             before = self.settled_count("volumes rejected")
             self.volume.publish(volume)
-            self.wait_until(lambda: self.count("volumes rejected") == before + 1)
+            wait_for(lambda: self.count("volumes rejected") == before + 1)
         self.assertEqual(self.good_mesh().uuid, good.uuid)
         # What is only odd is meshed: big-endian data, and Hounsfield units far below zero.
         swapped = b"".join(struct.pack(">h", v) for v in good_data)
         self.volume.publish(with_fields(encoding="16SC1", is_bigendian=1, data=swapped))
-        self.wait_until(lambda: self.good_mesh().header.stamp > good.header.stamp)
+        wait_for(lambda: self.good_mesh().header.stamp > good.header.stamp)
         self.assertEqual(self.good_mesh().uuid, good.uuid)
         hounsfield = b"".join(struct.pack("<h", 10 * v - 1024) for v in good_data)
         self.volume.publish(with_fields(encoding="16SC1", quantity="hounsfield", data=hounsfield))
-        self.wait_until(lambda: self.build(request(iso_value=-24.0)).result.code == Result.OK)
+        wait_for(lambda: self.build(request(iso_value=-24.0)).result.code == Result.OK)
         self.volume.publish(ball())
-        self.wait_until(lambda: self.good_mesh().uuid == good.uuid)
+        wait_for(lambda: self.good_mesh().uuid == good.uuid)
 
     def test_3_V7_V8_V9_volumes_without_a_surface_or_with_too_little_of_one(self):
         def built_from(volume, expected):
             # The volume takes its time to arrive: until then the one before it answers.
             self.volume.publish(volume)
-            self.wait_until(lambda: expected(self.build(request())))
+            wait_for(lambda: expected(self.build(request())))
             return self.build(request())
         air = built_from(with_fields(data=bytes([3]) * SIZE**3),
                          lambda r: r.result.code == Result.E_EMPTY_SURFACE)
@@ -150,7 +145,7 @@ class BadInput(unittest.TestCase):
         self.assertIn("would do", small.result.message)
         self.assertEqual(self.build(request(spacing=0.0004)).result.code, Result.OK)
         self.volume.publish(ball())
-        self.wait_until(lambda: self.build(request()).result.code == Result.OK)
+        wait_for(lambda: self.build(request()).result.code == Result.OK)
 
     def test_4_M1_to_M7_requests_are_refused_with_field_and_value(self):
         good = self.good_mesh()
@@ -180,9 +175,9 @@ class BadInput(unittest.TestCase):
         self.assertEqual(self.good_mesh().uuid, good.uuid)  # M10 too
         # M5, M6: fewer values than sections are no error.
         self.volume.publish(with_fields(data=bytes(200 if v > 100 else 0 for v in ball().data)))
-        self.wait_until(lambda: self.build(request(level_sections=9)).result.code == Result.OK)
+        wait_for(lambda: self.build(request(level_sections=9)).result.code == Result.OK)
         self.volume.publish(ball())
-        self.wait_until(lambda: self.good_mesh().uuid == good.uuid)
+        wait_for(lambda: self.good_mesh().uuid == good.uuid)
 
     def test_5_M8_a_second_request_is_answered_busy_while_the_first_runs(self):
         # Whichever of the two comes second must be told so; one that slips in before the slow one
@@ -213,14 +208,14 @@ class BadInput(unittest.TestCase):
         feedback = rospy.Subscriber(
             "mesher_node/build/feedback", BuildMeshActionFeedback,
             lambda m: stages.append((m.feedback.stage, m.feedback.fraction, m.feedback.tetrahedra)))
-        self.wait_until(lambda: feedback.get_num_connections() > 0)
+        wait_for(lambda: feedback.get_num_connections() > 0)
         goal = BuildMeshGoal(iso_value=100.0, spacing=0.006, level_sections=2)
         client.send_goal(goal)
         self.assertTrue(client.wait_for_result(rospy.Duration(60)))
         self.assertEqual(client.get_state(), GoalStatus.SUCCEEDED)
         self.assertEqual(client.get_result().result.code, Result.OK)
         self.assertEqual(client.get_result().statistics.tetrahedra, len(good.tetrahedra) // 4)
-        self.wait_until(lambda: stages and stages[-1][1] == 1.0)
+        wait_for(lambda: stages and stages[-1][1] == 1.0)
         feedback.unregister()
         self.assertEqual({s[0] for s in stages},
                          {"lattice", "levels", "refinement", "projection", "densities"})
@@ -234,7 +229,7 @@ class BadInput(unittest.TestCase):
         for _ in range(5):
             started = []
             client.send_goal(slow, feedback_cb=lambda f: started.append(f.stage))
-            self.wait_until(lambda: started)
+            wait_for(lambda: started)
             other.send_goal_and_wait(goal, rospy.Duration(60))
             client.cancel_goal()
             cancelled_at = time.monotonic()
@@ -267,7 +262,7 @@ class BadInput(unittest.TestCase):
         self.assertNotEqual(rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid, good.uuid)
         answer = load("ball.vtu")
         self.assertEqual((answer.result.code, answer.uuid), (Result.OK, good.uuid), answer.result.message)
-        self.wait_until(lambda: rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid == good.uuid)
+        wait_for(lambda: rospy.wait_for_message("mesh", TetMesh, timeout=10).uuid == good.uuid)
         path = os.path.join(folder, "ball.vtu")
         with open(path, "rb") as file:
             content = bytearray(file.read())
@@ -312,7 +307,7 @@ class BadInput(unittest.TestCase):
         cloud = rospy.wait_for_message("deformed_cloud", PointCloud2, timeout=10)
         values = [c for p in point_cloud2.read_points(cloud) for c in p]
         self.assertTrue(all(math.isfinite(v) for v in values))
-        return max(p[0] for p in point_cloud2.read_points(cloud, ["displacement"]))
+        return displacements_of(cloud).max()
 
     def dropped(self):
         return self.statuses[-1].dropped_poses if self.statuses else 0
@@ -321,17 +316,17 @@ class BadInput(unittest.TestCase):
         self.good_mesh()
         top = (CENTRE, CENTRE, CENTRE + RADIUS + 1.0)
         time = 1000.0
-        self.wait_until(lambda: len(self.statuses) > 0)
+        wait_for(lambda: len(self.statuses) > 0)
         for bad in (dict(place=(math.nan, 0, 0)), dict(place=(0, math.inf, 0)), dict(w=0.0), dict(w=1.2),
                     dict(w=math.nan), dict(stamp=0.0), dict(frame="nowhere"), dict(frame="")):
             before = self.dropped()
             fields = {"stamp": time, **bad}
-            self.wait_until(lambda: self.send_pose(**fields) or self.dropped() > before)
+            wait_for(lambda: self.send_pose(**fields) or self.dropped() > before)
         # P8: touching without moving leaves every vertex at rest.
         for i in range(10):
             self.send_pose(time + 0.01 * i, top)
             rospy.rostime.wallsleep(0.01)
-        self.wait_until(lambda: self.send_pose(time + 0.2, top) or self.statuses[-1].moved_vertices > 0)
+        wait_for(lambda: self.send_pose(time + 0.2, top) or self.statuses[-1].moved_vertices > 0)
         self.assertEqual(self.displacement(), 0.0)
         # P2: a quaternion that is nearly one is used.
         pressed = (CENTRE, CENTRE, CENTRE + RADIUS - 1.0)
@@ -340,7 +335,7 @@ class BadInput(unittest.TestCase):
             rospy.rostime.wallsleep(0.02)
             self.send_pose(time + 1.1, pressed, w=0.95)
             return self.displacement() > 0.0015
-        self.wait_until(press)
+        wait_for(press)
         # P6: a frame that becomes known is used from then on, a driver's leading slash and all.
         transform = TransformStamped()
         transform.header.frame_id = "patient"
@@ -353,13 +348,13 @@ class BadInput(unittest.TestCase):
             rospy.rostime.wallsleep(0.02)
             self.send_pose(time + 2.1, (top[0], top[1], top[2] - 53.0), frame="/tracker")
             return abs(self.displacement() - 0.003) < 1e-4
-        self.wait_until(lambda: self.displacement() == 0.0)
-        self.wait_until(press_in_tracker)
+        wait_for(lambda: self.displacement() == 0.0)
+        wait_for(press_in_tracker)
 
     def test_7_a_bad_mesh_leaves_the_last_one(self):
         good = self.good_mesh()
-        self.wait_until(lambda: self.statuses[-1].mesh_uuid == good.uuid)
-        self.wait_until(lambda: self.mesh.get_num_connections() > 0)
+        wait_for(lambda: self.statuses[-1].mesh_uuid == good.uuid)
+        wait_for(lambda: self.mesh.get_num_connections() > 0)
         for spoil in (lambda m: m.levels[:-1], lambda m: None):
             bad = rospy.wait_for_message("mesh", TetMesh, timeout=10)
             shorter = spoil(bad)
@@ -370,7 +365,7 @@ class BadInput(unittest.TestCase):
             bad.uuid = "bad"
             before = self.statuses[-1].rejected_meshes
             self.mesh.publish(bad)
-            self.wait_until(lambda: self.statuses[-1].rejected_meshes > before)
+            wait_for(lambda: self.statuses[-1].rejected_meshes > before)
         self.assertEqual(self.statuses[-1].mesh_uuid, good.uuid)
 
     def test_8_both_nodes_are_the_ones_that_were_started(self):

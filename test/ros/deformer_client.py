@@ -5,6 +5,7 @@ import rospy
 from geometry_msgs.msg import PoseStamped
 from sensor_msgs import point_cloud2
 from sensor_msgs.msg import PointCloud2
+from soft_tissue_sim import displacements_of
 from soft_tissue_sim.msg import Result, SimulationStatus, Volume
 from soft_tissue_sim.srv import BuildMesh
 
@@ -63,7 +64,7 @@ class DeformerCase(unittest.TestCase):
 
     def largest(self):
         """Displacement [m]."""
-        return max(p[3] for p in self.cloud())
+        return displacements_of(rospy.wait_for_message("deformed_cloud", PointCloud2, timeout=30)).max()
 
     def reach(self, condition):
         wait_for(condition, 60)

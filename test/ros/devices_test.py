@@ -10,8 +10,8 @@ import rospy
 import rostest
 from genpy.dynamic import generate_dynamic
 from geometry_msgs.msg import Pose, PoseStamped, Transform, TransformStamped, Vector3, WrenchStamped
-from sensor_msgs import point_cloud2
 from sensor_msgs.msg import JointState, Joy, PointCloud2
+from soft_tissue_sim import displacements_of
 from std_msgs.msg import Header
 
 from ball_volume import CENTRE, RADIUS
@@ -141,7 +141,7 @@ class Devices(DeformerCase):
         buttons = []
 
         def take_cloud(cloud, device):
-            furthest = max(p[0] for p in point_cloud2.read_points(cloud, ["displacement"]))
+            furthest = displacements_of(cloud).max()
             moved[device] = max(moved[device], furthest)
 
         subscribers = [rospy.Subscriber(f"/{device}/deformed_cloud", PointCloud2, take_cloud, device)
@@ -149,7 +149,7 @@ class Devices(DeformerCase):
         subscribers += [rospy.Subscriber(topic, kind, felt[topic].append) for topic, kind in self.FORCES.items()]
         subscribers.append(rospy.Subscriber("/geomagic_touch/stylus/button", Joy,
                                             lambda joy: buttons.append(joy.buttons[0])))
-        self.wait_for_all(lambda: all(s.get_num_connections() > 0 for s in subscribers))
+        self.reach(lambda: all(s.get_num_connections() > 0 for s in subscribers))
         # Whoever has a mesh shows it.
         for device in self.DEVICES:
             rospy.wait_for_message(f"/{device}/deformed_cloud", PointCloud2, timeout=60)
@@ -170,19 +170,12 @@ class Devices(DeformerCase):
             self.assertGreater(moved[device], 0.001, moved)
             self.assertLess(moved[device], 0.003, moved)
         for topic, forces in felt.items():
-            self.wait_for_all(lambda: forces and self.force_of(forces[-1]).z == 0.0)
+            self.reach(lambda: forces and self.force_of(forces[-1]).z == 0.0)
             # A tool that presses is pushed up; one that pulls is pulled down.
             strongest = max((self.force_of(f).z for f in forces), key=abs)
             self.assertGreater(strongest if topic != "/sigma/servo_cf" else -strongest, 1e-3, topic)
         self.assertEqual(set(buttons), {0, 1})
         self.assertEqual(len(felt["/Geomagic/force_feedback"][-1].lock), 3)
-
-    def wait_for_all(self, condition):
-        for _ in range(600):
-            if condition():
-                return
-            rospy.rostime.wallsleep(0.05)
-        self.fail("what was waited for never came")
 
 
 if __name__ == "__main__":

@@ -176,7 +176,7 @@ def program(name):
     return find_node("soft_tissue_sim", name)[0]
 
 
-def wait_for(condition, seconds):
+def wait_for(condition, seconds=30):
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:
