@@ -40,8 +40,8 @@ Ogre::HardwareVertexBufferSharedPtr vertex_buffer(std::size_t size, std::size_t 
       size, count, Ogre::HardwareBuffer::HBU_DYNAMIC_WRITE_ONLY_DISCARDABLE);
 }
 
-// Lines cost a renderer without hardware ten times what their faces cost: edges are where one of
-// the three weights of a face's corners vanishes.
+// Lines cost a renderer without hardware several times what their faces cost: edges are where one
+// of the three weights of a face's corners vanishes.
 constexpr char kLitCorner[] = R"(#version 120
 uniform mat4 clip_from_object, view_from_object;
 uniform vec4 ambient, diffuse, to_light;
