@@ -30,6 +30,18 @@ rospy.wait_for_service({name!r}, 20)
 answer = rospy.ServiceProxy({name!r}, {kind})(**json.loads({fields!r}))
 print(json.dumps([answer.result.code, answer.result.message]))
 """
+# Ends well once the mesher is busy. What it asks for is refused before it is begun, and keeps nobody waiting.
+WATCHING = """
+import rospy
+from soft_tissue_sim.srv import *
+from soft_tissue_sim.msg import Result
+rospy.init_node("watcher", anonymous=True, disable_signals=True, disable_rosout=True)
+rospy.wait_for_service({name!r}, 20)
+build = rospy.ServiceProxy({name!r}, BuildMesh, persistent=True)
+print("watching", flush=True)
+while build(level_sections=0).result.code != Result.E_BUSY:
+    rospy.rostime.wallsleep(0.01)
+"""
 
 
 # Volumes and meshes of claims that are not true.
@@ -125,6 +137,10 @@ class World:
     def call(self, name, kind, **fields):
         """Code and sentence of the result."""
         return self.ask(CALLING.format(name=name, kind=kind, fields=json.dumps(fields)), 120)
+
+    def watcher(self, mesher):
+        """A process that ends with 0 once the mesher builds; it prints `watching` once it looks."""
+        return self.start(sys.executable, "-c", WATCHING.format(name=mesher + "/build_mesh"))
 
     def attack(self, count):
         """So many hostile volumes and meshes."""
