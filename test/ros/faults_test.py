@@ -14,7 +14,7 @@ from ros_world import World, figure, log_of, program, resident_kilobytes, wait_f
 BUILD = dict(iso_value=20.0, initial_tetrahedra=2000, level_sections=2, smooth_levels=2)
 HUGE = {**BUILD, "initial_tetrahedra": 3000000}
 OK = 0
-E_IO, E_NOMEM, E_TOO_LARGE = 24, 25, 3
+E_IO, E_NOMEM = 24, 25
 BRAIN = os.path.join(rospkg.RosPack().get_path("soft_tissue_sim"), "data", "ch2bet.nii.gz")
 
 
