@@ -15,7 +15,7 @@ tissue_test(test_simulate LIBRARIES tissue_test_support tissue_simulate SOURCES
   simulate/contrast_test.cpp simulate/dynamics_test.cpp simulate/elasticity_test.cpp
   simulate/force_feedback_test.cpp simulate/force_loop_test.cpp simulate/multigrid_test.cpp
   simulate/near_incompressibility_test.cpp simulate/node_surface_test.cpp simulate/playback_test.cpp
-  simulate/push_field_test.cpp simulate/rigid_inclusions_test.cpp simulate/scene_file_test.cpp
+  simulate/probe_points_test.cpp simulate/push_field_test.cpp simulate/rigid_inclusions_test.cpp simulate/scene_file_test.cpp
   simulate/scene_test.cpp simulate/soft_holds_test.cpp simulate/solid_scene_test.cpp
   simulate/solutions_test.cpp simulate/torture_test.cpp)
 # Effects' files once more, with every call in them counted; where calls can be told apart by the

@@ -97,7 +97,6 @@ tissue::MeshOptions options_from(const Request& request, const MesherNodeParamet
   options.label_densities = label_densities_from(request);
   options.component = component_from(request);
   options.max_tetrahedra = static_cast<std::uint64_t>(std::max(parameters.max_tetrahedra, 1));
-  options.threads = parameters.threads;
   return options;
 }
 

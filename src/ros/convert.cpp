@@ -1,8 +1,7 @@
 #include "ros/convert.h"
 
+#include "ros/geometry.h"
 #include "tissue/base/check_mesh.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cstring>
@@ -67,17 +66,9 @@ soft_tissue_sim::Volume to_message(const tissue::Volume& volume) {
   message.width = volume.grid.size[0];
   message.height = volume.grid.size[1];
   message.depth = volume.grid.size[2];
-  message.spacing.x = volume.grid.spacing.x();
-  message.spacing.y = volume.grid.spacing.y();
-  message.spacing.z = volume.grid.spacing.z();
-  message.origin.position.x = volume.grid.origin.x();
-  message.origin.position.y = volume.grid.origin.y();
-  message.origin.position.z = volume.grid.origin.z();
-  const Eigen::Quaterniond rotation(volume.grid.axes);
-  message.origin.orientation.x = rotation.x();
-  message.origin.orientation.y = rotation.y();
-  message.origin.orientation.z = rotation.z();
-  message.origin.orientation.w = rotation.w();
+  message.spacing = vector_message(volume.grid.spacing);
+  message.origin.position = point_message(volume.grid.origin);
+  message.origin.orientation = quaternion_message(Eigen::Quaterniond(volume.grid.axes));
   message.encoding = tissue::encoding_name(volume.voxels);
   message.rescale_slope = volume.slope;
   message.rescale_intercept = volume.intercept;

@@ -2,6 +2,7 @@
 
 #include "ros/guarded.h"
 #include "tissue/base/mesh_file.h"
+#include "tissue/base/atomic_file.h"
 #include "tissue/base/safe_path.h"
 
 #include <ros/console.h>

@@ -1,6 +1,7 @@
 #include "ros/markers.h"
 
 #include "ros/colours.h"
+#include "ros/geometry.h"
 
 #include <algorithm>
 #include <map>
@@ -17,14 +18,6 @@ std_msgs::ColorRGBA opaque(const Colour& colour) {
   result.g = colour[1];
   result.b = colour[2];
   result.a = 1.0f;
-  return result;
-}
-
-geometry_msgs::Point point(const tissue::Vec3& place) {
-  geometry_msgs::Point result;
-  result.x = place.x();
-  result.y = place.y();
-  result.z = place.z();
   return result;
 }
 
@@ -55,7 +48,8 @@ visualization_msgs::MarkerArray level_markers(const DisplayMesh& display, const 
         marker.color = opaque(level_colour(face.level));
         found = by_level.emplace(face.level, std::move(marker)).first;
       }
-      for (const std::uint32_t v : face.corners) found->second.points.push_back(point(place(v)));
+      for (const std::uint32_t v : face.corners)
+        found->second.points.push_back(point_message(place(v)));
     }
   }
   Marker edges = empty_marker(frame_id, "edges", Marker::LINE_LIST);
@@ -66,8 +60,8 @@ visualization_msgs::MarkerArray level_markers(const DisplayMesh& display, const 
     for (int i = 0; i < 3; ++i) {
       const std::uint32_t a = face.corners[i], b = face.corners[(i + 1) % 3];
       if (!seen.insert({std::min(a, b), std::max(a, b)}).second) continue;
-      edges.points.push_back(point(place(a)));
-      edges.points.push_back(point(place(b)));
+      edges.points.push_back(point_message(place(a)));
+      edges.points.push_back(point_message(place(b)));
     }
   }
   visualization_msgs::MarkerArray array;
@@ -85,7 +79,7 @@ visualization_msgs::MarkerArray density_markers(const DisplayMesh& display,
     for (const DisplayMesh::Face& face : *faces) {
       for (const std::uint32_t v : face.corners) {
         const float share = (mesh.densities[v] - *low) / range;
-        marker.points.push_back(point(mesh.vertices[v].cast<double>()));
+        marker.points.push_back(point_message(mesh.vertices[v].cast<double>()));
         marker.colors.push_back(opaque(share_colour(share)));
       }
     }
@@ -106,7 +100,7 @@ visualization_msgs::MarkerArray replacing_all(visualization_msgs::MarkerArray ar
 visualization_msgs::Marker ball_marker(const std::string& name, const tissue::Vec3& position,
                                        double radius, float opacity, const std::string& frame_id) {
   Marker marker = empty_marker(frame_id, name, Marker::SPHERE);
-  marker.pose.position = point(position);
+  marker.pose.position = point_message(position);
   marker.scale.x = marker.scale.y = marker.scale.z = 2.0 * radius;
   marker.color = opaque({1.0f, 0.85f, 0.1f});
   marker.color.a = opacity;

@@ -15,12 +15,9 @@
 #include <utility>
 
 namespace tissue_ros {
-namespace {
 
 using tissue::ErrorCode;
 using tissue::InputError;
-
-}  // namespace
 
 MesherNode::MesherNode(ros::NodeHandle handle, ros::NodeHandle private_handle,
                        const MesherNodeParameters& parameters)
@@ -83,10 +80,7 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
     const std::lock_guard<std::mutex> lock(data_mutex_);
     slot = std::move(volume);
   });
-  if (!outcome.ok()) {
-    report(name, outcome);
-    return;
-  }
+  if (!outcome.ok()) return report(name, outcome);
   ROS_INFO("mesher_node: took a %s of %u x %u x %u voxels", name, message.width, message.height,
            message.depth);
   bool ready = false;
@@ -99,10 +93,22 @@ void MesherNode::take_volume(const soft_tissue_sim::Volume& message, const char*
   if (!std::exchange(has_kept_mesh_, false)) build_wanted_ = true;
 }
 
-bool MesherNode::serve(Request& request, Response& response) {
+template <class Work>
+soft_tissue_sim::Result MesherNode::result_of(const char* what, const Work& work) {
+  const Outcome outcome = guarded(work);
+  if (!outcome.ok()) report(what, outcome);
+  return to_message(outcome.code, outcome.sentence);
+}
+
+tissue::Run MesherNode::run_until(Token cancelled) const {
   tissue::Run run;
-  run.cancelled = node_ending_;
-  build(request, response, run);
+  run.threads = parameters_.threads;
+  run.cancelled = std::move(cancelled);
+  return run;
+}
+
+bool MesherNode::serve(Request& request, Response& response) {
+  build(request, response, run_until(node_ending_));
   // Returning false would lose the response.
   return true;
 }
@@ -116,8 +122,7 @@ void MesherNode::take_goal(Goal goal) {
   }
   // roscpp delivers the next goal only after this returns.
   if (pursuit_.joinable()) pursuit_.join();
-  tissue::Run run;
-  run.cancelled = std::make_shared<std::atomic<bool>>(false);
+  tissue::Run run = run_until(std::make_shared<std::atomic<bool>>(false));
   {
     const std::lock_guard<std::mutex> lock(goal_mutex_);
     goal_cancelled_ = run.cancelled;
@@ -163,9 +168,8 @@ void MesherNode::build_if_wanted() {
     if (!lock.owns_lock() || !build_wanted_.exchange(false)) return;
   }
   Response unused;
-  tissue::Run run;
-  run.cancelled = node_ending_;
-  const Outcome outcome = guarded([&] { build(request_from(parameters_), unused, run); });
+  const Outcome outcome =
+      guarded([&] { build(request_from(parameters_), unused, run_until(node_ending_)); });
   if (!outcome.ok()) report("build on volume", outcome);
   // Somebody was faster: the wish stands.
   if (unused.result.code == soft_tissue_sim::Result::E_BUSY) build_wanted_ = true;
@@ -173,7 +177,7 @@ void MesherNode::build_if_wanted() {
 
 template <class Asked, class Answer>
 void MesherNode::build(const Asked& request, Answer& answer, const tissue::Run& run) {
-  const Outcome outcome = guarded([&] {
+  answer.result = result_of("build_mesh", [&] {
     const std::unique_lock<std::mutex> lock(build_mutex_, std::try_to_lock);
     if (!lock.owns_lock()) throw InputError(ErrorCode::kBusy, "build_mesh: a build is running");
     const auto mesh = std::make_shared<const tissue::TetMesh>(mesh_for(request, run));
@@ -188,8 +192,6 @@ void MesherNode::build(const Asked& request, Answer& answer, const tissue::Run& 
     ROS_INFO("mesher_node: %zu tets, %zu vertices, mesh %s", mesh->tets.size(),
              mesh->vertices.size(), mesh->uuid.c_str());
   });
-  if (!outcome.ok()) report("build_mesh", outcome);
-  answer.result = to_message(outcome.code, outcome.sentence);
 }
 
 template <class Asked>
@@ -224,13 +226,14 @@ tissue::TetMesh MesherNode::mesh_for(const Asked& request, const tissue::Run& ru
 }
 
 bool MesherNode::save(FileRequest& request, FileResponse& response) {
-  const Outcome outcome = guarded([&] {
+  response.result = result_of("save_mesh", [&] {
     MeshPtr mesh;
     {
       const std::lock_guard<std::mutex> lock(data_mutex_);
       mesh = mesh_;
     }
-    const std::string path = tissue::confined_path(state_folder(parameters_.folder), request.path, false);
+    const std::string path =
+        tissue::confined_path(state_folder(parameters_.folder), request.path, false);
     if (mesh == nullptr) {
       throw InputError(ErrorCode::kNoVolume, "save_mesh: there is no mesh yet");
     }
@@ -241,21 +244,18 @@ bool MesherNode::save(FileRequest& request, FileResponse& response) {
     }
     response.uuid = mesh->uuid;
   });
-  if (!outcome.ok()) report("save_mesh", outcome);
-  response.result = to_message(outcome.code, outcome.sentence);
   return true;
 }
 
 bool MesherNode::load(FileRequest& request, FileResponse& response) {
-  const Outcome outcome = guarded([&] {
-    const std::string path = tissue::confined_path(state_folder(parameters_.folder), request.path, true);
+  response.result = result_of("load_mesh", [&] {
+    const std::string path =
+        tissue::confined_path(state_folder(parameters_.folder), request.path, true);
     const auto mesh =
         std::make_shared<const tissue::TetMesh>(tissue::read_mesh(path, /*only_own=*/true));
     publish(mesh);
     response.uuid = mesh->uuid;
   });
-  if (!outcome.ok()) report("load_mesh", outcome);
-  response.result = to_message(outcome.code, outcome.sentence);
   return true;
 }
 

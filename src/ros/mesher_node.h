@@ -45,8 +45,11 @@ class MesherNode {
   using Goal = ActionServer::GoalHandle;
   using VolumePtr = std::shared_ptr<const tissue::Volume>;
   using MeshPtr = std::shared_ptr<const tissue::TetMesh>;
+  // What a build looks at, and stops when it is set.
+  using Token = std::shared_ptr<std::atomic<bool>>;
 
   void take_volume(const soft_tissue_sim::Volume& message, const char* name, VolumePtr& slot);
+  tissue::Run run_until(Token cancelled) const;
   bool serve(Request& request, Response& response);
   void take_goal(Goal goal);
   void pursue(Goal goal, const tissue::Run& run);
@@ -62,6 +65,9 @@ class MesherNode {
   tissue::TetMesh mesh_for(const Asked& request, const tissue::Run& run) const;
   void publish(const MeshPtr& mesh);
   void report(const char* what, const Outcome& outcome);
+  /// What became of `work`; what was refused is reported.
+  template <class Work>
+  soft_tissue_sim::Result result_of(const char* what, const Work& work);
   void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   MesherNodeParameters parameters_;
@@ -71,9 +77,7 @@ class MesherNode {
   MeshPtr mesh_;
   std::mutex build_mutex_;
   std::mutex publish_mutex_;
-  // What a build looks at, and stops when it is set: that of the goal last taken, and of all
-  // others.
-  using Token = std::shared_ptr<std::atomic<bool>>;
+  // That of the goal last taken, and of all other builds.
   std::mutex goal_mutex_;
   Token goal_cancelled_ = std::make_shared<std::atomic<bool>>(false);
   const Token node_ending_ = std::make_shared<std::atomic<bool>>(false);

@@ -1,5 +1,6 @@
 #include "ros/mouse_tool_node.h"
 
+#include "ros/geometry.h"
 #include "ros/markers.h"
 #include "ros/tool_path_node.h"
 
@@ -9,15 +10,12 @@ namespace tissue_ros {
 
 visualization_msgs::InteractiveMarker mouse_marker(const MouseToolNodeParameters& parameters) {
   using Control = visualization_msgs::InteractiveMarkerControl;
-  const tissue::Vec3 at = place_from("at", parameters.at);
   visualization_msgs::InteractiveMarker marker;
   marker.header.frame_id = parameters.frame_id;
   marker.name = parameters.tool;
   marker.description = "drag " + parameters.tool;
   marker.scale = static_cast<float>(8.0 * parameters.radius);
-  marker.pose.position.x = at.x();
-  marker.pose.position.y = at.y();
-  marker.pose.position.z = at.z();
+  marker.pose.position = point_message(place_from("at", parameters.at));
   marker.pose.orientation.w = 1.0;
 
   Control ball;

@@ -9,9 +9,9 @@
 
 namespace tissue_ros {
 
-// The nodes' parameters, their only defaults and what numbers may be; config/parameters.yaml repeats
-// the defaults with comments, and a test compares the two. `visit` names each of them to a reader or
-// to that test.
+// The nodes' parameters, their only defaults and what numbers may be; config/parameters.yaml
+// repeats the defaults with comments, and a test compares the two. `visit` names each of them to a
+// reader or to that test.
 
 constexpr Range kAny{-1e300, 1e300};
 /// [Hz] or [s]
@@ -59,7 +59,7 @@ struct MesherNodeParameters {
   bool project_boundary = tissue::MeshOptions{}.project_boundary;
   std::string folder, keep;
   int max_tetrahedra = static_cast<int>(tissue::MeshOptions{}.max_tetrahedra);
-  int threads = tissue::MeshOptions{}.threads;
+  int threads = tissue::Run{}.threads;
   int marker_max_triangles = 20000;
   std::string section_axis = "y";
   double section_at = 0.5;

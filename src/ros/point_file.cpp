@@ -1,7 +1,7 @@
 #include "ros/point_file.h"
 
 #include "tissue/base/error.h"
-#include "tissue/base/safe_path.h"
+#include "tissue/base/atomic_file.h"
 
 #include <pcl/io/pcd_io.h>
 #include <pcl/point_types.h>

@@ -1,6 +1,7 @@
 #include "ros/simulation.h"
 
 #include "ros/convert.h"
+#include "ros/geometry.h"
 #include "ros/markers.h"
 
 #include <utility>
@@ -36,11 +37,7 @@ Simulation::Clouds clouds_of(const tissue::TetMesh& mesh, const std::vector<std:
   for (const auto& [name, place] : probes) {
     if (!place) continue;
     clouds.probes->names.push_back(name);
-    geometry_msgs::Point point;
-    point.x = place->x();
-    point.y = place->y();
-    point.z = place->z();
-    clouds.probes->positions.push_back(point);
+    clouds.probes->positions.push_back(point_message(*place));
   }
   return clouds;
 }

@@ -1,5 +1,6 @@
 #include "ros/tool_listener.h"
 
+#include "ros/geometry.h"
 #include "ros/guarded.h"
 
 #include <geometry_msgs/WrenchStamped.h>
@@ -143,9 +144,7 @@ void ToolListener::publish_force(std::size_t tool, const std::string& frame, std
   geometry_msgs::WrenchStamped message;
   message.header.frame_id = frame;
   message.header.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
-  message.wrench.force.x = force.x();
-  message.wrench.force.y = force.y();
-  message.wrench.force.z = force.z();
+  message.wrench.force = vector_message(force);
   heard_[tool].force.publish(message);
 }
 

@@ -1,5 +1,6 @@
 #include "ros/tool_path_node.h"
 
+#include "ros/geometry.h"
 #include "tissue/base/error.h"
 
 #include <geometry_msgs/PoseStamped.h>
@@ -69,13 +70,8 @@ void ToolPathNode::publish() {
   geometry_msgs::PoseStamped message;
   message.header.frame_id = parameters_.frame_id;
   message.header.stamp = ros::Time::now();
-  message.pose.position.x = pose.position.x();
-  message.pose.position.y = pose.position.y();
-  message.pose.position.z = pose.position.z();
-  message.pose.orientation.x = pose.orientation.x();
-  message.pose.orientation.y = pose.orientation.y();
-  message.pose.orientation.z = pose.orientation.z();
-  message.pose.orientation.w = pose.orientation.w();
+  message.pose.position = point_message(pose.position);
+  message.pose.orientation = quaternion_message(pose.orientation);
   publisher_.publish(message);
 }
 

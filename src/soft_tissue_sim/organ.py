@@ -1,4 +1,5 @@
 """The nodes of an organ, as seen from a program that moves it."""
+import functools
 import threading
 
 import numpy
@@ -72,7 +73,7 @@ class Organ:
         Run. The tool waits at its first pose until the organ follows it: where tissue is factorised when a tool
         takes hold of it, that can be seconds. `topic`: where the scene listens to the tool, if not at
         TOOL/measured_cp. Throws ValueError for what is no path, and rospy.ROSException if nobody listens to the tool
-        or no cloud shows its last pose."""
+        or what is heard does not come to its last pose."""
         path = numpy.asarray(path, dtype=float)
         if path.ndim != 2 or path.shape[1] != 8 or len(path) == 0:
             raise ValueError(f"move: path is {path.shape}, not (n, 8) of t x y z qx qy qz qw")
@@ -81,26 +82,28 @@ class Organ:
         publisher = rospy.Publisher(topic or tool + "/measured_cp", PoseStamped, queue_size=10)
         self._wait_for_listener(publisher)
         self._wait_until_followed(publisher, path[0], frame)
-        start, shown = rospy.Time.now(), threading.Event()
+        start = rospy.Time.now()
         last = start + rospy.Duration(path[-1, 0] - path[0, 0])
-        run = Run(start.to_sec())
+        run, heard, shown = Run(start.to_sec()), {}, threading.Event()
 
-        def take_cloud(cloud):
-            if cloud.header.stamp >= start:
-                run.take_cloud(cloud)
-            if cloud.header.stamp >= last:
+        def take(topic, keep, message):
+            if topic != "cloud" or message.header.stamp >= start:
+                keep(message)
+            heard[topic] = message.header.stamp
+            # Each topic comes at its own pace.
+            if "cloud" in heard and min(list(heard.values())) >= last:
                 shown.set()
 
-        listeners = [rospy.Subscriber("deformed_cloud", PointCloud2, take_cloud),
-                     rospy.Subscriber(tool + "/servo_cf", WrenchStamped, lambda wrench: run.take_force(tool, wrench)),
-                     rospy.Subscriber(self._probes_topic, Probes, run.take_probes)]
+        listeners = [rospy.Subscriber(topic, kind, functools.partial(take, name, keep)) for name, topic, kind, keep in (
+            ("cloud", "deformed_cloud", PointCloud2, run.take_cloud),
+            ("force", tool + "/servo_cf", WrenchStamped, functools.partial(run.take_force, tool)),
+            ("probes", self._probes_topic, Probes, run.take_probes))]
         try:
             for row in path:
                 due = start + rospy.Duration(row[0] - path[0, 0])
                 rospy.sleep(max(due - rospy.Time.now(), rospy.Duration(0)))
                 publisher.publish(self._pose(row, due, frame))
-            if not shown.wait(self._timeout):
-                raise rospy.ROSException(f"move: no cloud showed the last pose of {tool} within {self._timeout} s")
+            self._stay(publisher, path[-1], frame, shown)
         finally:
             for connection in (*listeners, publisher):
                 connection.unregister()
@@ -122,16 +125,20 @@ class Organ:
                 followed.set()
 
         listener = rospy.Subscriber("deformed_cloud", PointCloud2, take_cloud)
-        deadline = rospy.Time.now() + rospy.Duration(self._timeout)
         try:
-            while not followed.wait(0.01):
-                now = rospy.Time.now()
-                if now > deadline:
-                    raise rospy.ROSException(f"move: no cloud showed {publisher.name} within {self._timeout} s")
-                sent.add(now)
-                publisher.publish(self._pose(row, now, frame))
+            self._stay(publisher, row, frame, followed, sent.add)
         finally:
             listener.unregister()
+
+    def _stay(self, publisher, row, frame, until, sent=lambda stamp: None):
+        """Sends a pose again and again, as a device does that stays where it is, until an event is set."""
+        deadline = rospy.Time.now() + rospy.Duration(self._timeout)
+        while not until.wait(0.01):
+            now = rospy.Time.now()
+            if now > deadline:
+                raise rospy.ROSException(f"move: no cloud showed {publisher.name} within {self._timeout} s")
+            sent(now)
+            publisher.publish(self._pose(row, now, frame))
 
     @staticmethod
     def _pose(row, stamp, frame):

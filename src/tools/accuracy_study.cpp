@@ -145,11 +145,8 @@ void run_all(const tissue::Study& study, const Places& places, int jobs) {
 }
 
 void run(const po::variables_map& given) {
-  const auto required = [&](const char* option) {
-    if (given.count(option) != 0) return given[option].as<std::string>();
-    throw InputError(ErrorCode::kParam, std::string(option) + ": is missing; --help says how");
-  };
-  const Places places = {required("study"), required("output")};
+  const Places places = {tissue_tools::required(given, "study"),
+                         tissue_tools::required(given, "output")};
   const tissue::Study study = tissue::read_study(places.study_file);
   if (given.count("list") != 0) {
     for (std::size_t i = 0; i < study.rows.size(); ++i) {

@@ -80,6 +80,7 @@ void run(const tissue_tools::MeshVolumeArguments& arguments) {
   }
   files.stop();
   tissue::Run watched;
+  watched.threads = arguments.threads;
   watched.report = [](const tissue::Progress& progress) {
     tissue_tools::show_progress(
         progress.fraction,

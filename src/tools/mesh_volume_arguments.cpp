@@ -145,7 +145,7 @@ po::options_description mesh_volume_options() {
   add("following-sweeps", number(defaults.projection.sweeps_after_following),
       "more rounds after inner vertices have followed; 0: they stay");
   add("stage", word()->default_value("refined"), "lattice or refined");
-  add("threads", number(defaults.threads), "0: all");
+  add("threads", number(0), "0: all");
   add("marching-cubes", word(), "PLY, STL or VTP to write the isosurface of marching cubes to");
   add("decimate", number(1.0), "part of its triangles to keep");
   add("output,o", word(), "VTU file to write");
@@ -210,7 +210,7 @@ MeshVolumeArguments mesh_volume_arguments(const po::variables_map& given) {
   mesh.project_boundary = given.count("no-projection") == 0;
   mesh.projection.sweeps = whole("sweeps", 1, 100);
   mesh.projection.sweeps_after_following = whole("following-sweeps", 0, 100);
-  mesh.threads = whole("threads", 0, 1024);
+  result.threads = whole("threads", 0, 1024);
   if (given.count("window") != 0) {
     const std::vector<double> window = numbers("window", text("window"), 2);
     mesh.window = std::array<double, 2>{window[0], window[1]};

@@ -17,6 +17,8 @@ struct MeshVolumeArguments {
   /// Part of the triangles of marching cubes to keep.
   double decimate = 1.0;
   std::vector<tissue::Tumour> tumours;
+  /// 0: all. The mesh does not depend on it.
+  int threads = 0;
   tissue::MeshOptions mesh;
 };
 

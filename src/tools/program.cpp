@@ -45,6 +45,11 @@ int run_program(const std::string& name, const po::options_description& options,
   return 2;
 }
 
+std::string required(const po::variables_map& given, const char* option) {
+  if (given.count(option) != 0) return given[option].as<std::string>();
+  throw InputError(ErrorCode::kParam, std::string(option) + ": is missing; --help says how");
+}
+
 void write_text(const std::string& option, const std::string& path, const std::string& text) {
   std::ofstream file(path);
   file << text << '\n';

@@ -13,6 +13,9 @@ int run_program(const std::string& name, const boost::program_options::options_d
                 const std::string& positional, int argc, char** argv,
                 const std::function<void(const boost::program_options::variables_map&)>& run);
 
+/// What was given for an option. Throws tissue::InputError E_PARAM if nothing was.
+std::string required(const boost::program_options::variables_map& given, const char* option);
+
 /// Writes a text file. Throws tissue::InputError E_IO that names the option.
 void write_text(const std::string& option, const std::string& path, const std::string& text);
 

@@ -50,14 +50,10 @@ po::options_description options() {
 }
 
 Arguments arguments_from(const po::variables_map& given) {
-  const auto required = [&](const char* option) {
-    if (given.count(option) != 0) return given[option].as<std::string>();
-    throw InputError(ErrorCode::kParam, std::string(option) + ": is missing; --help says how");
-  };
   Arguments arguments;
-  arguments.scene = required("scene");
-  arguments.mesh = required("mesh");
-  arguments.output = required("output");
+  arguments.scene = tissue_tools::required(given, "scene");
+  arguments.mesh = tissue_tools::required(given, "mesh");
+  arguments.output = tissue_tools::required(given, "output");
   if (given.count("stats") != 0) arguments.stats = given["stats"].as<std::string>();
   if (given.count("path") != 0) arguments.paths = given["path"].as<std::vector<std::string>>();
   if (given.count("bag") != 0) arguments.bag = given["bag"].as<std::string>();

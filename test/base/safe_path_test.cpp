@@ -1,6 +1,7 @@
 #include "tissue/base/safe_path.h"
 
 #include "support/mesh_checks.h"
+#include "tissue/base/atomic_file.h"
 
 #include <sys/stat.h>
 

@@ -27,8 +27,13 @@ MeshOptions options_for(const benchmark::State& state, Method method) {
   MeshOptions options;
   options.method = method;
   options.spacing = 1e-5 * static_cast<double>(state.range(0));
-  options.threads = static_cast<int>(state.range(1));
   return options;
+}
+
+tissue::Run run_for(const benchmark::State& state) {
+  tissue::Run run;
+  run.threads = static_cast<int>(state.range(1));
+  return run;
 }
 
 void build(benchmark::State& state, const MeshOptions& options) {
@@ -37,7 +42,7 @@ void build(benchmark::State& state, const MeshOptions& options) {
   double cpu_seconds = 0.0;
   organ();  // Not part of the first round.
   for (auto _ : state) {
-    statistics = tissue::build_mesh(organ(), nullptr, options).mesh.statistics;
+    statistics = tissue::build_mesh(organ(), nullptr, options, run_for(state)).mesh.statistics;
     for (const tissue::StageCost& stage : statistics.stages) {
       stages[stage.name] += stage.cpu_seconds;
       cpu_seconds += stage.cpu_seconds;
@@ -80,12 +85,12 @@ void cancel(benchmark::State& state) {
   };
   const MeshOptions options = options_for(state, Method::kDensity);
   const Clock::time_point start = Clock::now();
-  tissue::build_mesh(organ(), nullptr, options);
+  tissue::build_mesh(organ(), nullptr, options, run_for(state));
   const double whole = seconds(Clock::now() - start);
   for (auto _ : state) {
     double longest = 0.0;
     for (int moment = 0; moment < 25; ++moment) {
-      tissue::Run run;
+      tissue::Run run = run_for(state);
       run.cancelled = std::make_shared<std::atomic<bool>>(false);
       Clock::time_point asked;
       std::thread impatient([&] {

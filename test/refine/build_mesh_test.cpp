@@ -111,12 +111,13 @@ TEST(BuildMesh, MeetsTheWishedNumberOfInitialTetsWithinTwoPercent) {
 
 TEST(BuildMesh, M10_TheSameRequestGivesTheSameMeshWithAnyNumberOfThreads) {
   const Shape blob = tissue_test::synthetic_shapes()[4];
-  MeshOptions options = options_for(blob, 0.005, 1);
-  options.threads = 1;
-  const std::string once = build_mesh(blob.volume, nullptr, options).mesh.uuid;
-  EXPECT_EQ(build_mesh(blob.volume, nullptr, options).mesh.uuid, once);
-  options.threads = 3;
-  EXPECT_EQ(build_mesh(blob.volume, nullptr, options).mesh.uuid, once);
+  const MeshOptions options = options_for(blob, 0.005, 1);
+  tissue::Run run;
+  run.threads = 1;
+  const std::string once = build_mesh(blob.volume, nullptr, options, run).mesh.uuid;
+  EXPECT_EQ(build_mesh(blob.volume, nullptr, options, run).mesh.uuid, once);
+  run.threads = 3;
+  EXPECT_EQ(build_mesh(blob.volume, nullptr, options, run).mesh.uuid, once);
 }
 
 TEST(BuildMesh, V18_DoesNotDependOnTheEncoding) {

@@ -30,8 +30,7 @@ double swelling(const Scene& scene) {
   double rest = 0.0, more = 0.0;
   for (std::size_t t = 0; t < body.tets.size(); ++t) {
     const Tet& tet = body.tets[t];
-    const double six =
-        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    const double six = determinant(body.rest, tet);
     rest += six;
     more += six * (strains[t].det_f - 1.0);
   }

@@ -3,7 +3,7 @@
 #include "support/mesh_checks.h"
 #include "support/shapes.h"
 #include "tissue/simulate/scene_file.h"
-#include "tissue/study/material_places.h"
+#include "tissue/simulate/material_places.h"
 #include "tissue/study/tumour_wishes.h"
 
 #include <random>
@@ -64,8 +64,7 @@ TEST(StrainMesh, MeetsTheTotalConformsAndIsFineUnderTheTool) {
   int near_count = 0, far_count = 0;
   for (const Tet& tet : mesh.tets) {
     const Vec3 place = mesh.vertices[tet[0]].cast<double>();
-    const double volume = determinant(mesh.vertices[tet[0]], mesh.vertices[tet[1]],
-                                      mesh.vertices[tet[2]], mesh.vertices[tet[3]]);
+    const double volume = determinant(mesh.vertices, tet);
     const double distance = (place - top).norm();
     (distance < 0.008 ? near : far) += distance < 0.008 || distance > 0.03 ? volume : 0.0;
     near_count += distance < 0.008;
@@ -78,11 +77,12 @@ TEST(StrainMesh, MeetsTheTotalConformsAndIsFineUnderTheTool) {
 TEST(StrainMesh, IsTheSameForAnyNumberOfThreads) {
   const Vec3 top = top_of(uniform_mesh());
   const ImplicitSurface surface = surface_at_iso(organ(), 20.0);
-  MeshOptions options = asked_for(4000);
+  const MeshOptions options = asked_for(4000);
+  tissue::Run run;
   std::string uuid;
   for (const int threads : {1, 2, 5}) {
-    options.threads = threads;
-    const TetMesh mesh = build_strain_mesh(organ(), surface, options, pressed(top)).mesh;
+    run.threads = threads;
+    const TetMesh mesh = build_strain_mesh(organ(), surface, options, pressed(top), run).mesh;
     EXPECT_TRUE(uuid.empty() || mesh.uuid == uuid) << threads;
     uuid = mesh.uuid;
   }

@@ -5,7 +5,7 @@
 #include "support/program.h"
 #include "tissue/simulate/scene_file.h"
 #include "tissue/study/leave_out.h"
-#include "tissue/study/material_places.h"
+#include "tissue/simulate/material_places.h"
 #include "tissue/study/row_file.h"
 #include "tissue/study/study_file.h"
 #include "tissue/study/study_table.h"
@@ -197,8 +197,10 @@ RowResult tumour_sphere(double spacing, const tissue_test::TumourSphere& exact,
   EXPECT_TRUE(problem.solve(held).converged);
   RowResult result;
   for (const TetPlace& place : material_places(problem.body, points)) {
-    result.displacements.push_back(
-        problem.elements.value_at(place.tet, place.barycentric, problem.positions));
+    Vec3& now = result.displacements.emplace_back(Vec3::Zero());
+    for (const NodeWeight& of : problem.elements.shape_at(place.tet, place.barycentric)) {
+      now += of.weight * problem.positions.segment<3>(3 * Eigen::Index{of.node});
+    }
   }
   for (std::size_t i = 0; i < points.size(); ++i) result.displacements[i] -= points[i];
   return result;

@@ -50,8 +50,7 @@ Body kuhn_block(const std::array<int, 3>& cells, const Vec3& size, int halvings)
             ++corner[order[step]];
             tet[step + 1] = number(corner[0], corner[1], corner[2]);
           }
-          if (determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]],
-                          body.rest[tet[3]]) < 0.0) {
+          if (determinant(body.rest, tet) < 0.0) {
             std::swap(tet[2], tet[3]);
           }
           body.tets.push_back(tet);

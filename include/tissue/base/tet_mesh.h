@@ -45,5 +45,9 @@ double determinant(const Position& a, const Position& b, const Position& c, cons
       .cross(c.template cast<double>() - origin)
       .dot(d.template cast<double>() - origin);
 }
+template <class Position>
+double determinant(const std::vector<Position>& vertices, const Tet& tet) {
+  return determinant(vertices[tet[0]], vertices[tet[1]], vertices[tet[2]], vertices[tet[3]]);
+}
 
 }  // namespace tissue

@@ -31,4 +31,8 @@ FaceTopology face_topology(const std::vector<Tet>& tets, std::size_t vertex_coun
 /// Edges are numbered in the order in which the tets name them.
 EdgeTopology edge_topology(const std::vector<Tet>& tets, std::size_t vertex_count);
 
+/// The vertices that triangles use, ascending. `vertex_count` is that of the mesh.
+std::vector<std::uint32_t> vertices_of(const std::vector<Triangle>& triangles,
+                                       std::size_t vertex_count);
+
 }  // namespace tissue

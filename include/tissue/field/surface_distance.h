@@ -22,8 +22,4 @@ SurfaceDistance surface_distance(const ImplicitSurface& surface, const std::vect
                                  const std::vector<Triangle>& boundary, double reach,
                                  const Run& run);
 
-/// The vertices that triangles use, ascending. `vertex_count` is that of the mesh.
-std::vector<std::uint32_t> vertices_of(const std::vector<Triangle>& triangles,
-                                       std::size_t vertex_count);
-
 }  // namespace tissue

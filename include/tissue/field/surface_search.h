@@ -15,7 +15,7 @@ struct SurfacePoint {
 };
 
 /// Places are good to this fraction of half a voxel.
-constexpr double kTolerance = 1e-3;
+constexpr double kSurfaceTolerance = 1e-3;
 
 /// Searches along one line, the unit vector `direction`: in a first step of `first` and then in
 /// steps of `step` [m], until f changes its sign.
@@ -29,7 +29,7 @@ SurfacePoint search_along(const Function& f, const Vec3& from, double f_from, co
     if (f_here == 0.0 || (f_here < 0.0) != (f_before < 0.0)) {
       const Vec3 start = from + before * direction;
       const double t =
-          f_here == 0.0 ? 1.0 : bracketed_root(f, start, here, f_before, f_here, kTolerance);
+          f_here == 0.0 ? 1.0 : bracketed_root(f, start, here, f_before, f_here, kSurfaceTolerance);
       const double found = before + t * (distance - before);
       return {from + found * direction, found, found <= reach};
     }

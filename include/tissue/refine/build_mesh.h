@@ -68,8 +68,6 @@ struct MeshOptions {
   /// More tets than this are refused before they are allocated; so is what would not fit into the
   /// memory that the machine has left.
   std::uint64_t max_tetrahedra = 100000000;
-  /// Threads; 0 means all. The result does not depend on it.
-  int threads = 0;
 };
 
 /// A mesh, and for the uniform stage what levels came from.
@@ -82,7 +80,7 @@ struct BuiltMesh {
 };
 
 /// From a volume to a conforming mesh, fine where tissue is soft. The organ is what `surface`
-/// bounds, whose field lies on the volume's grid. The threads of `run` are those of the options.
+/// bounds, whose field lies on the volume's grid.
 ///
 /// Throws InputError: E_PARAM, E_N, E_NTINIT, E_TOO_MANY_TETS, E_NOMEM, E_TOO_SMALL, E_CANCELLED,
 /// E_SIZE_MISMATCH if the surface's field lies on another grid than the volume.

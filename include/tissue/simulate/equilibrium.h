@@ -1,6 +1,7 @@
 #pragma once
 
 #include "tissue/simulate/energy.h"
+#include "tissue/simulate/equilibrium_options.h"
 #include "tissue/simulate/linear_system.h"
 
 #include <memory>
@@ -9,14 +10,6 @@
 namespace tissue {
 
 class RigidMotions;
-
-struct EquilibriumOptions {
-  /// Of the residual: the norm of the forces on free nodes, by the largest of those of the forces
-  /// that hold fixed ones, that were out of balance at the start, penalties left out, and of the
-  /// penalties'.
-  double tolerance = 1e-3;
-  int max_iterations = 200;
-};
 
 struct EquilibriumReport {
   bool converged = false;

@@ -15,6 +15,16 @@ struct QuadraturePoint {
   double weight;
 };
 
+/// The centroid for order 1; four points that integrate quadratics exactly for order 2 (Keast
+/// 1986).
+const std::vector<QuadraturePoint>& tet_quadrature(int order);
+
+/// By how much of a node's value something consists of it.
+struct NodeWeight {
+  std::uint32_t node;
+  double weight;
+};
+
 /// Straight-edged tets of order 1 (4 nodes) or 2 (10 nodes: the corners, then the midpoints of
 /// kTetEdges). The first nodes are the body's vertices.
 class FiniteElements {
@@ -43,15 +53,14 @@ class FiniteElements {
   /// For each of the last vertices the two between which it lay half-way when it was made.
   const std::vector<Edge>& parents() const { return parents_; }
 
-  /// The centroid for order 1; four points that integrate quadratics exactly for order 2.
-  const std::vector<QuadraturePoint>& quadrature() const { return quadrature_; }
+  const std::vector<QuadraturePoint>& quadrature() const { return tet_quadrature(order_); }
   /// Gradients of the shape functions of all nodes at a quadrature point [1/m], a row for each.
   using Gradients = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, kMaxNodes, 3>;
   void gradients(std::size_t element, const QuadraturePoint& point, Gradients& result) const;
 
-  /// The value inside an element of what the nodes have, three after three.
-  Vec3 value_at(std::size_t element, const std::array<double, 4>& barycentric,
-                const Eigen::VectorXd& nodal) const;
+  /// The shape functions of an element's nodes at a place inside it.
+  std::vector<NodeWeight> shape_at(std::size_t element,
+                                   const std::array<double, 4>& barycentric) const;
 
   /// A quarter of the rigid tets around each vertex [m³]; empty without any.
   const std::vector<double>& rigid_volumes() const { return rigid_volumes_; }
@@ -80,7 +89,6 @@ class FiniteElements {
 
   int order_;
   std::size_t element_count_;
-  std::vector<QuadraturePoint> quadrature_;
   std::vector<Vec3> rest_;
   std::vector<std::uint32_t> nodes_;
   std::vector<Edge> midpoints_, parents_;

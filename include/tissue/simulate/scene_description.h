@@ -2,9 +2,9 @@
 
 #include "tissue/simulate/anchors.h"
 #include "tissue/simulate/effect.h"
-#include "tissue/simulate/equilibrium.h"
+#include "tissue/simulate/equilibrium_options.h"
 #include "tissue/simulate/material.h"
-#include "tissue/simulate/push_field.h"
+#include "tissue/simulate/push_options.h"
 
 #include <map>
 #include <optional>

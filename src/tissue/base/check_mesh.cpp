@@ -134,8 +134,7 @@ void check_mesh(const TetMesh& mesh) {
   std::vector<std::size_t> bad;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const Tet& tet = mesh.tets[t];
-    if (determinant(mesh.vertices[tet[0]], mesh.vertices[tet[1]], mesh.vertices[tet[2]],
-                    mesh.vertices[tet[3]]) > 0.0) {
+    if (determinant(mesh.vertices, tet) > 0.0) {
       continue;
     }
     bad.push_back(t);

@@ -2,7 +2,7 @@
 
 #include "tissue/base/check_mesh.h"
 #include "tissue/base/error.h"
-#include "tissue/base/safe_path.h"
+#include "tissue/base/atomic_file.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>

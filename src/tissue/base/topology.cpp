@@ -111,4 +111,17 @@ EdgeTopology edge_topology(const std::vector<Tet>& tets, std::size_t vertex_coun
   return topology;
 }
 
+std::vector<std::uint32_t> vertices_of(const std::vector<Triangle>& triangles,
+                                       std::size_t vertex_count) {
+  std::vector<std::uint8_t> used(vertex_count, 0);
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t vertex : triangle) used[vertex] = 1;
+  }
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t v = 0; v < vertex_count; ++v) {
+    if (used[v] != 0) result.push_back(v);
+  }
+  return result;
+}
+
 }  // namespace tissue

@@ -1,6 +1,7 @@
 #include "tissue/field/surface_distance.h"
 
 #include "tissue/base/parallel.h"
+#include "tissue/base/topology.h"
 #include "tissue/field/surface_search.h"
 
 namespace tissue {
@@ -11,19 +12,6 @@ namespace {
 constexpr double kAccuracy = 0.01;
 
 }  // namespace
-
-std::vector<std::uint32_t> vertices_of(const std::vector<Triangle>& triangles,
-                                       std::size_t vertex_count) {
-  std::vector<std::uint8_t> used(vertex_count, 0);
-  for (const Triangle& triangle : triangles) {
-    for (const std::uint32_t vertex : triangle) used[vertex] = 1;
-  }
-  std::vector<std::uint32_t> result;
-  for (std::uint32_t v = 0; v < vertex_count; ++v) {
-    if (used[v] != 0) result.push_back(v);
-  }
-  return result;
-}
 
 SurfaceDistance surface_distance(const ImplicitSurface& surface, const std::vector<Vec3f>& vertices,
                                  const std::vector<Triangle>& boundary, double reach,

@@ -1,6 +1,6 @@
 #include "poly_data.h"
 #include "tissue/base/error.h"
-#include "tissue/base/safe_path.h"
+#include "tissue/base/atomic_file.h"
 
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>

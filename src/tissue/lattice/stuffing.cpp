@@ -154,8 +154,7 @@ class Filler {
           whole = false;
         }
       }
-      if (!whole && determinant(cut_.vertices[tet[0]], cut_.vertices[tet[1]], cut_.vertices[tet[2]],
-                                cut_.vertices[tet[3]]) < 0.0) {
+      if (!whole && determinant(cut_.vertices, tet) < 0.0) {
         std::swap(tet[0], tet[2]);
       }
       mesh.whole[next++] = whole ? 1 : 0;

@@ -208,10 +208,10 @@ class Builder {
   double spacing_ = 0.0;
 };
 
-// Calls body(organ, run) with what a mesh is made from. Throws as build_mesh().
+// Calls body(organ) with what a mesh is made from. Throws as build_mesh().
 template <class Body>
 auto with_organ(const std::shared_ptr<const Volume>& volume, const ImplicitSurface& surface,
-                const MeshOptions& options, const Run& run, const Body& body) {
+                const MeshOptions& options, const Body& body) {
   check_options(options);
   const Grid& grid = surface.field->grid;
   if (!same_grid(volume->grid, grid)) {
@@ -220,32 +220,29 @@ auto with_organ(const std::shared_ptr<const Volume>& volume, const ImplicitSurfa
                                                    std::to_string(grid.size[2]) +
                                                    " voxels is not the volume's");
   }
-  Run here = run;
-  here.threads = options.threads;
   std::shared_ptr<const Volume> densities = volume;
   if (!options.label_densities.empty()) {
     densities = std::make_shared<Volume>(relabelled(*volume, options.label_densities));
   }
-  return body(Organ{*densities, surface, window_for(*densities, surface, options)}, here);
+  return body(Organ{*densities, surface, window_for(*densities, surface, options)});
 }
 
 }  // namespace
 
 BuiltMesh build_mesh(const std::shared_ptr<const Volume>& volume, const ImplicitSurface& surface,
                      const MeshOptions& options, const Run& run) {
-  return with_organ(volume, surface, options, run, [&](const Organ& organ, const Run& here) {
-    return Builder(organ, options, here).build();
-  });
+  return with_organ(volume, surface, options,
+                    [&](const Organ& organ) { return Builder(organ, options, run).build(); });
 }
 
 std::uint64_t planned_tetrahedra(const std::shared_ptr<const Volume>& volume,
                                  const ImplicitSurface& surface, const MeshOptions& options,
                                  const Run& run) {
-  return with_organ(volume, surface, options, run, [&](const Organ& organ, const Run& here) {
+  return with_organ(volume, surface, options, [&](const Organ& organ) {
     StageClock clock;
     TemplateLibrary library;
-    const StuffingOptions stuffing = lattice_for(organ, options, library, clock, here);
-    return design_mesh(organ, stuffing, options, library, clock, here).tetrahedra;
+    const StuffingOptions stuffing = lattice_for(organ, options, library, clock, run);
+    return design_mesh(organ, stuffing, options, library, clock, run).tetrahedra;
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include "ring_guard.h"
 #include "tissue/base/parallel.h"
+#include "tissue/base/topology.h"
 #include "tissue/field/surface_distance.h"
 #include "tissue/field/surface_search.h"
 

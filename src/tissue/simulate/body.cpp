@@ -35,9 +35,7 @@ DeformationQuality deformation_quality(const Body& body, const State& state) {
   DeformationQuality quality;
   for (const Tet& tet : body.tets) {
     const auto& x = state.positions;
-    const double det_f =
-        determinant(x[tet[0]], x[tet[1]], x[tet[2]], x[tet[3]]) /
-        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    const double det_f = determinant(x, tet) / determinant(body.rest, tet);
     quality.min_det_f = std::min(quality.min_det_f, det_f);
     quality.inverted += det_f <= 0.0;
   }

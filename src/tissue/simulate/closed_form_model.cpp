@@ -49,11 +49,10 @@ class ClosedFormModel : public DeformationModel {
   }
 
   const State& state() const override { return state_; }
-  std::vector<Vec3> places(const std::vector<TetPlace>& material) const override {
-    std::vector<Vec3> result;
-    for (const TetPlace& place : material) result.push_back(linear_place(*body_, state_, place));
-    return result;
+  std::vector<NodeWeight> shape_at(const TetPlace& place) const override {
+    return linear_shape(body_->tets[place.tet], place);
   }
+  Vec3 node(std::uint32_t number) const override { return state_.positions[number]; }
   bool recovering() const override { return phase_ == Phase::kRecovering; }
 
  private:

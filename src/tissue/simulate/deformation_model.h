@@ -1,6 +1,7 @@
 #pragma once
 
 #include "effect_costs.h"
+#include "tissue/simulate/finite_elements.h"
 
 namespace tissue {
 
@@ -12,8 +13,15 @@ class DeformationModel {
   virtual void reset() = 0;
   virtual bool recovering() const = 0;
   virtual const State& state() const = 0;
-  /// Where places in the material are.
-  virtual std::vector<Vec3> places(const std::vector<TetPlace>& material) const = 0;
+  /// The nodes on which a place in the material depends. The first are the body's vertices.
+  virtual std::vector<NodeWeight> shape_at(const TetPlace& place) const = 0;
+  /// Where a node is now [m].
+  virtual Vec3 node(std::uint32_t number) const = 0;
+  Vec3 mean_of(const std::vector<NodeWeight>& weights) const {
+    Vec3 sum = Vec3::Zero();
+    for (const NodeWeight& of : weights) sum += of.weight * node(of.node);
+    return sum;
+  }
   /// What closed_form has not, because it solves no equation.
   virtual std::vector<std::optional<Vec3>> tool_forces() const { return {}; }
   virtual std::vector<std::optional<ToolFeedback>> tool_feedback() const { return {}; }
@@ -21,13 +29,11 @@ class DeformationModel {
   virtual std::vector<TetStrain> strains() const { return {}; }
 };
 
-/// Where a place is if everything is linear in its tet.
-inline Vec3 linear_place(const Body& body, const State& state, const TetPlace& place) {
-  Vec3 sum = Vec3::Zero();
-  for (std::size_t i = 0; i < 4; ++i) {
-    sum += place.barycentric[i] * state.positions[body.tets[place.tet][i]];
-  }
-  return sum;
+/// The shape functions of a tet that is linear.
+inline std::vector<NodeWeight> linear_shape(const Tet& tet, const TetPlace& place) {
+  std::vector<NodeWeight> shape;
+  for (std::size_t i = 0; i < 4; ++i) shape.push_back({tet[i], place.barycentric[i]});
+  return shape;
 }
 
 std::unique_ptr<DeformationModel> closed_form_model(const SceneDescription& scene, const Body& body,

@@ -6,22 +6,22 @@
 
 namespace tissue {
 
+const std::vector<QuadraturePoint>& tet_quadrature(int order) {
+  static const std::vector<QuadraturePoint> centroid = {{{0.25, 0.25, 0.25, 0.25}, 1.0}};
+  static const std::vector<QuadraturePoint> four = [] {
+    const double near = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0, far = (5.0 - std::sqrt(5.0)) / 20.0;
+    std::vector<QuadraturePoint> points(4, {{far, far, far, far}, 0.25});
+    for (std::size_t corner = 0; corner < 4; ++corner) points[corner].place[corner] = near;
+    return points;
+  }();
+  return order == 1 ? centroid : four;
+}
+
 FiniteElements::FiniteElements(const Body& body, int order, const std::vector<Tet>& rigid)
     : order_(order), element_count_(body.tets.size()), parents_(body.parents) {
   if (order != 1 && order != 2) {
     throw InputError(ErrorCode::kParam,
                      "element_order: " + std::to_string(order) + " is neither 1 nor 2");
-  }
-  if (order == 1) {
-    quadrature_ = {{{0.25, 0.25, 0.25, 0.25}, 1.0}};
-  } else {
-    // Keast (1986), degree 2.
-    const double near = (5.0 + 3.0 * std::sqrt(5.0)) / 20.0, far = (5.0 - std::sqrt(5.0)) / 20.0;
-    for (int corner = 0; corner < 4; ++corner) {
-      QuadraturePoint point = {{far, far, far, far}, 0.25};
-      point.place[corner] = near;
-      quadrature_.push_back(point);
-    }
   }
   rest_.reserve(body.rest.size());
   for (const Vec3f& place : body.rest) rest_.push_back(place.cast<double>());
@@ -40,8 +40,7 @@ FiniteElements::FiniteElements(const Body& body, int order, const std::vector<Te
   }
   if (!rigid.empty()) rigid_volumes_.assign(body.rest.size(), 0.0);
   for (const Tet& tet : rigid) {
-    const double six =
-        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    const double six = determinant(body.rest, tet);
     for (const std::uint32_t v : tet) rigid_volumes_[v] += six / 24.0;
   }
   if (order == 2) add_midpoints(body);
@@ -83,21 +82,20 @@ void FiniteElements::gradients(std::size_t element, const QuadraturePoint& point
   }
 }
 
-Vec3 FiniteElements::value_at(std::size_t element, const std::array<double, 4>& barycentric,
-                              const Eigen::VectorXd& nodal) const {
+std::vector<NodeWeight> FiniteElements::shape_at(std::size_t element,
+                                                 const std::array<double, 4>& barycentric) const {
   const std::uint32_t* const own = nodes(element);
-  Vec3 sum = Vec3::Zero();
+  std::vector<NodeWeight> shape;
   for (std::size_t i = 0; i < 4; ++i) {
     const double at_corner = barycentric[i];
-    const double shape = order_ == 1 ? at_corner : at_corner * (2.0 * at_corner - 1.0);
-    sum += shape * nodal.segment<3>(3 * Eigen::Index{own[i]});
+    shape.push_back({own[i], order_ == 1 ? at_corner : at_corner * (2.0 * at_corner - 1.0)});
   }
-  if (order_ == 1) return sum;
+  if (order_ == 1) return shape;
   for (std::size_t e = 0; e < kTetEdges.size(); ++e) {
     const auto& [a, b] = kTetEdges[e];
-    sum += 4.0 * barycentric[a] * barycentric[b] * nodal.segment<3>(3 * Eigen::Index{own[4 + e]});
+    shape.push_back({own[4 + e], 4.0 * barycentric[a] * barycentric[b]});
   }
-  return sum;
+  return shape;
 }
 
 Eigen::VectorXd rest_positions(const FiniteElements& elements) {

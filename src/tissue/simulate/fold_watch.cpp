@@ -34,8 +34,7 @@ double least_singular_value(const Mat3& f) {
 }  // namespace
 
 bool is_folded(const Tet& tet, const std::vector<Vec3>& vertices) {
-  return !(determinant(vertices[tet[0]], vertices[tet[1]], vertices[tet[2]], vertices[tet[3]]) >
-           0.0);
+  return !(determinant(vertices, tet) > 0.0);
 }
 
 FoldWatch::FoldWatch(const Body& body, const Eigen::VectorXd& base,

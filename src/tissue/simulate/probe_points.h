@@ -1,23 +1,22 @@
 #pragma once
 
+#include "deformation_model.h"
 #include "tissue/simulate/scene_description.h"
 
 namespace tissue {
 
-/// Follows a scene's probes as the body moves: each is a weighted mean of vertices.
+/// Follows a scene's probes as the body moves: each is a weighted mean of nodes, by the shape
+/// functions of the model's elements.
 class ProbePoints {
  public:
-  /// A place outside the tissue and a density that nothing exceeds have no vertices.
-  ProbePoints(const std::map<std::string, Probe>& probes, const Body& body);
+  /// A place outside the tissue and a density that nothing exceeds have no nodes.
+  ProbePoints(const std::map<std::string, Probe>& probes, const Body& body,
+              const DeformationModel& model);
 
-  std::map<std::string, std::optional<Vec3>> places(const State& state) const;
+  std::map<std::string, std::optional<Vec3>> places(const DeformationModel& model) const;
 
  private:
-  struct Weight {
-    std::uint32_t vertex;
-    double weight;
-  };
-  std::map<std::string, std::vector<Weight>> weights_;
+  std::map<std::string, std::vector<NodeWeight>> weights_;
 };
 
 }  // namespace tissue

@@ -32,7 +32,7 @@ class Scene::Implementation {
         model(description.model == Model::kClosedForm
                   ? closed_form_model(description, *body_, costs)
                   : solid_model(description, *body_, costs, threads)),
-        probes(description.probes, *body_) {}
+        probes(description.probes, *body_, *model) {}
 
   StepReport step(const ToolPoses& tools, double dt) {
     if (!(dt >= 0.0 && std::isfinite(dt))) {
@@ -83,10 +83,13 @@ const Body& Scene::body() const { return implementation_->body(); }
 bool Scene::recovering() const { return implementation_->model->recovering(); }
 const std::vector<EffectCost>& Scene::effect_costs() const { return implementation_->costs.all(); }
 std::map<std::string, std::optional<Vec3>> Scene::probes() const {
-  return implementation_->probes.places(state());
+  return implementation_->probes.places(*implementation_->model);
 }
 std::vector<Vec3> Scene::places(const std::vector<TetPlace>& material) const {
-  return implementation_->model->places(material);
+  const DeformationModel& model = *implementation_->model;
+  std::vector<Vec3> result;
+  for (const TetPlace& place : material) result.push_back(model.mean_of(model.shape_at(place)));
+  return result;
 }
 std::vector<std::optional<Vec3>> Scene::tool_forces() const {
   std::vector<std::optional<Vec3>> forces = implementation_->model->tool_forces();

@@ -116,17 +116,10 @@ double Solid::potential_energy(const Eigen::VectorXd& positions) const {
   return sum;
 }
 
-std::vector<Vec3> Solid::places(const State& state, const Eigen::VectorXd& positions,
-                                const std::vector<TetPlace>& material) const {
-  std::vector<Vec3> result;
-  for (const TetPlace& place : material) {
-    if (const std::optional<std::size_t> element = element_of(place.tet)) {
-      result.push_back(elements_.value_at(*element, place.barycentric, positions));
-    } else {
-      result.push_back(linear_place(body_, state, place));
-    }
-  }
-  return result;
+std::vector<NodeWeight> Solid::shape_at(const TetPlace& place) const {
+  const std::optional<std::size_t> element = element_of(place.tet);
+  return element ? elements_.shape_at(*element, place.barycentric)
+                 : linear_shape(body_.tets[place.tet], place);
 }
 
 std::vector<TetStrain> Solid::strains(const Eigen::VectorXd& positions) const {

@@ -33,8 +33,7 @@ class Solid {
 
   /// Of the body and its loads, with nodes there [J].
   double potential_energy(const Eigen::VectorXd& positions) const;
-  std::vector<Vec3> places(const State& state, const Eigen::VectorXd& positions,
-                           const std::vector<TetPlace>& material) const;
+  std::vector<NodeWeight> shape_at(const TetPlace& place) const;
   /// None for springs. What is rigid has none, and nobody knows its stress.
   std::vector<TetStrain> strains(const Eigen::VectorXd& positions) const;
   /// Of the tissue on each [N].

@@ -67,8 +67,12 @@ class SolidModel : public DeformationModel {
   bool recovering() const override { return dynamics_ && dynamics_->moving(); }
   const State& state() const override { return state_; }
 
-  std::vector<Vec3> places(const std::vector<TetPlace>& material) const override {
-    return solid_.places(state_, positions_now(), material);
+  std::vector<NodeWeight> shape_at(const TetPlace& place) const override {
+    return solid_.shape_at(place);
+  }
+  Vec3 node(std::uint32_t number) const override {
+    if (number < state_.positions.size()) return state_.positions[number];
+    return positions_now().segment<3>(3 * Eigen::Index{number});
   }
   std::vector<std::optional<Vec3>> tool_forces() const override {
     return solid_.tool_forces(positions_now());

@@ -13,8 +13,7 @@ double mean_young(const Material& material, const Body& body) {
   double sum = 0.0, volume = 0.0;
   for (std::size_t t = 0; t < young.size(); ++t) {
     const Tet& tet = body.tets[t];
-    const double six =
-        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    const double six = determinant(body.rest, tet);
     sum += six * young[t];
     volume += six;
   }

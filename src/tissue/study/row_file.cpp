@@ -1,7 +1,7 @@
 #include "tissue/study/row_file.h"
 
 #include "tissue/base/error.h"
-#include "tissue/base/safe_path.h"
+#include "tissue/base/atomic_file.h"
 
 #include <nlohmann/json.hpp>
 

@@ -7,7 +7,7 @@
 #include "tissue/field/read_volume.h"
 #include "tissue/simulate/scene_run.h"
 #include "tissue/study/leave_out.h"
-#include "tissue/study/material_places.h"
+#include "tissue/simulate/material_places.h"
 #include "tissue/study/tumour_wishes.h"
 
 #include <algorithm>
@@ -25,11 +25,9 @@ constexpr double kReferenceTolerance = 1e-5;
 
 TetMesh mesh_for(const StudyProblem& problem, const std::shared_ptr<const Volume>& volume,
                  const ImplicitSurface& surface, const StudyMesh& mesh, const StudyRow& row,
-                 double tumour_above, int threads, const Run& run) {
+                 double tumour_above, const Run& run) {
   MeshOptions options = mesh.options;
-  options.iso_value = problem.iso_value;
   options.target_tetrahedra = row.tetrahedra;
-  options.threads = threads;
   if (options.method == Method::kWished && mesh.wishes == Wishes::kStrain) {
     return build_strain_mesh(volume, surface, options, problem.motion, run).mesh;
   }
@@ -87,11 +85,9 @@ double volume_change(const Scene& scene) {
   double before = 0.0, after = 0.0;
   for (std::size_t t = 0; t < body.tets.size(); ++t) {
     const Tet& tet = body.tets[t];
-    const double rest =
-        determinant(body.rest[tet[0]], body.rest[tet[1]], body.rest[tet[2]], body.rest[tet[3]]);
+    const double rest = determinant(body.rest, tet);
     before += rest;
-    after += strains.empty() ? determinant(now[tet[0]], now[tet[1]], now[tet[2]], now[tet[3]])
-                             : rest * strains[t].det_f;
+    after += strains.empty() ? determinant(now, tet) : rest * strains[t].det_f;
   }
   return 100.0 * (after / before - 1.0);
 }
@@ -183,7 +179,7 @@ void run_or_throw(const Study& study, const StudyRow& row, const Run& run, RowRe
   }
   const SamplePoints points = sample_points(*volume, surface, study.points);
   const TetMesh mesh = mesh_for(problem, volume, surface, study.meshes[row.mesh], row,
-                                study.points.tumour_above, study.threads, run);
+                                study.points.tumour_above, run);
   for (const StageCost& stage : mesh.statistics.stages) {
     if (stage.name != "search") result.meshing_seconds += stage.cpu_seconds;
   }
@@ -199,8 +195,10 @@ void run_or_throw(const Study& study, const StudyRow& row, const Run& run, RowRe
 
 RowResult run_row(const Study& study, const StudyRow& row, const Run& run) {
   RowResult result;
+  Run on_threads = run;
+  on_threads.threads = study.threads;
   try {
-    run_or_throw(study, row, run, result);
+    run_or_throw(study, row, on_threads, result);
   } catch (const InputError& error) {
     result.failure = std::string(name(error.code())) + ": " + error.what();
   } catch (const std::bad_alloc&) {

@@ -4,7 +4,7 @@
 #include "tissue/base/error.h"
 #include "tissue/base/stage_clock.h"
 #include "tissue/simulate/scene_run.h"
-#include "tissue/study/material_places.h"
+#include "tissue/simulate/material_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ Pilot run_pilot(const std::shared_ptr<const Volume>& volume, const ImplicitSurfa
       std::max(kPilotPart * static_cast<double>(options.target_tetrahedra), 100.0));
   const TetMesh mesh = build_mesh(volume, surface, coarse, run).mesh;
   const auto body = std::make_shared<const Body>(body_of(mesh));
-  Scene scene(motion.scene, body, options.threads);
+  Scene scene(motion.scene, body, run.threads);
   const std::vector<double> young = young_of(motion.scene.material, *body);
   Pilot pilot = {*body, std::vector<double>(body->tets.size(), 0.0)};
   double farthest = 0.0;

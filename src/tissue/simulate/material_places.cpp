@@ -1,4 +1,4 @@
-#include "tissue/study/material_places.h"
+#include "tissue/simulate/material_places.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,8 +24,6 @@ class PointGrid {
     cells_.resize(static_cast<std::size_t>(counts_[0] * counts_[1] * counts_[2]));
     for (std::uint32_t i = 0; i < points.size(); ++i) cells_[cell_of(points[i])].push_back(i);
   }
-
-  double cell() const { return cell_; }
 
   // Calls body(point) for all points in cells that meet the box.
   template <class Body>
@@ -107,10 +105,11 @@ std::vector<TetPlace> material_places(const Body& body, const std::vector<Vec3>&
   const PointGrid grid(points);
   std::vector<double> nearest(points.size(), std::numeric_limits<double>::infinity());
   // First what tets hold, then ever farther around them.
-  double reach = 0.0;
-  for (bool all_found = false; !all_found; reach = std::max(grid.cell(), 2.0 * reach)) {
+  double reach = 0.0, largest_tet = 0.0;
+  for (bool all_found = false; !all_found; reach = std::max(largest_tet, 2.0 * reach)) {
     for (std::uint32_t t = 0; t < body.tets.size(); ++t) {
       const PlacedTet tet(body, body.tets[t]);
+      largest_tet = std::max(largest_tet, (tet.high - tet.low).maxCoeff());
       const Vec3 margin = Vec3::Constant(reach);
       grid.for_each_near(tet.low - margin, tet.high + margin, [&](std::uint32_t point) {
         const std::array<double, 4> barycentric = tet.barycentric(points[point]);
