@@ -49,12 +49,21 @@ class Soak(unittest.TestCase):
         self.assertEqual(answer.result.code, Result.OK, answer.result.message)
         wait_for(lambda: self.status and self.status.mesh_uuid != self.uuid, 60)
         self.uuid = self.status.mesh_uuid
+        self.since = rospy.Time.now()
         self.felt.clear()
 
-    def settle(self):
+    def settle(self, process):
         """Until all tools hold tissue, which each of them has factorised anew, and clouds show what they do now."""
-        self.late = time.monotonic()
-        wait_for(lambda: self.felt >= set(TOOLS) and time.monotonic() - self.late > LONGEST_GRIP, 300)
+        self.late, most = time.monotonic(), 0
+
+        def is_settled():
+            nonlocal most
+            now = resident_kilobytes(process)
+            if now > most + 1000:
+                most, self.late = now, time.monotonic()
+            return self.felt >= set(TOOLS) and time.monotonic() - self.late > LONGEST_GRIP
+
+        wait_for(is_settled, 300)
 
     def least(self, process, seconds):
         """Of the memory that it takes and of what it has allocated [kB], the least within a time: what is on its way to
@@ -67,7 +76,8 @@ class Soak(unittest.TestCase):
         return min(resident), min(self.allocated)
 
     def take_force(self, wrench, tool):
-        if wrench.wrench.force.z != 0.0:
+        # Those of the mesh before may still be on their way.
+        if wrench.wrench.force.z != 0.0 and wrench.header.stamp > self.since:
             self.felt.add(tool)
         self.forces += tool == TOOLS[0]
 
@@ -92,7 +102,7 @@ class Soak(unittest.TestCase):
         rospy.init_node("soak")
         seconds, every = int(rospy.get_param("~seconds")), int(rospy.get_param("~mesh_every"))
         self.status, self.uuid, self.latencies, self.allocated, self.felt, self.forces = None, "", [], [], set(), 0
-        self.clouds, self.width, self.late = 0, 0, 0.0
+        self.clouds, self.width, self.late, self.since = 0, 0, 0.0, rospy.Time(0)
         self.mesher = rospy.ServiceProxy("/mesher_node/build_mesh", BuildMesh)
         rospy.Subscriber("/deformer_node/status", SimulationStatus, self.take_status)
         rospy.Subscriber("/diagnostics", DiagnosticArray, self.take_diagnostics)
@@ -111,14 +121,14 @@ class Soak(unittest.TestCase):
             sizes = itertools.cycle((6000, 9000))
             self.build(next(sizes))
             self.build(next(sizes))
-            self.settle()
+            self.settle(deformer)
             poses, shown, meshes = self.forces, self.clouds, 0
             del self.latencies[:]
             memory = []
             end = time.monotonic() + seconds
             while time.monotonic() < end:
                 if every:
-                    self.settle()
+                    self.settle(deformer)
                 # Of the same mesh each: those of the smaller are another thing.
                 memory.append(self.least(deformer, every or 1))
                 if every:
