@@ -24,7 +24,7 @@ from soft_tissue_sim.srv import BuildMesh, MeshFile
 from tf2_msgs.msg import TFMessage
 
 from ball_volume import CENTRE, RADIUS, SIZE, ball, request
-from ros_world import wait_for
+from ros_world import tells_why, wait_for
 
 
 def with_fields(**fields):
@@ -40,6 +40,7 @@ def with_fields(**fields):
 
 class BadInput(unittest.TestCase):
     @classmethod
+    @tells_why
     def setUpClass(cls):
         rospy.init_node("bad_input_test")
         cls.volume = rospy.Publisher("volume", Volume, queue_size=1)

@@ -6,6 +6,7 @@ import unittest
 import rospkg
 import rospy
 import rostest
+from ros_world import tells_why
 from sensor_msgs import point_cloud2
 from sensor_msgs.msg import PointCloud2
 from soft_tissue_sim import displacements_of
@@ -17,6 +18,7 @@ SHARE = rospkg.RosPack().get_path("soft_tissue_sim")
 
 class Chain(unittest.TestCase):
     @classmethod
+    @tells_why
     def setUpClass(cls):
         rospy.init_node("chain_test")
         cls.mesh = rospy.wait_for_message("mesh", TetMesh, timeout=120)

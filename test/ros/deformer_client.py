@@ -10,7 +10,7 @@ from soft_tissue_sim.msg import Result, SimulationStatus, Volume
 from soft_tissue_sim.srv import BuildMesh
 
 from ball_volume import ball, request
-from ros_world import wait_for
+from ros_world import tells_why, wait_for
 
 
 class DeformerCase(unittest.TestCase):
@@ -18,6 +18,7 @@ class DeformerCase(unittest.TestCase):
     TOOLS = ()
 
     @classmethod
+    @tells_why
     def setUpClass(cls):
         rospy.init_node("deformer_client")
         cls.publishers = {name: rospy.Publisher(name + "/measured_cp", PoseStamped, queue_size=1)

@@ -9,7 +9,7 @@ import unittest
 import rospkg
 import rostest
 
-from ros_world import World, figure, log_of, program, resident_kilobytes, wait_for
+from ros_world import World, figure, log_of, program, resident_kilobytes, tells_why, wait_for
 
 BUILD = dict(iso_value=20.0, initial_tetrahedra=2000, level_sections=2, smooth_levels=2)
 HUGE = {**BUILD, "initial_tetrahedra": 3000000}
@@ -20,11 +20,12 @@ BRAIN = os.path.join(rospkg.RosPack().get_path("soft_tissue_sim"), "data", "ch2b
 
 class Faults(unittest.TestCase):
     @classmethod
+    @tells_why
     def setUpClass(cls):
         cls.world = World()
         cls.launch = cls.world.launch("demo.launch", "rviz:=false", "play:=false", "initial_tetrahedra:=2000")
-        cls.uuid = cls.world.hear("/mesh", "TetMesh", "m.uuid", 60)
-        wait_for(lambda: cls.mesh_of_deformer() == cls.uuid, 30)
+        cls.uuid = cls.world.hear("/mesh", "TetMesh", "m.uuid", 120)
+        wait_for(lambda: cls.mesh_of_deformer() == cls.uuid, 60)
 
     @classmethod
     def tearDownClass(cls):

@@ -10,7 +10,7 @@ from soft_tissue_sim.msg import SimulationStatus
 
 from ball_volume import CENTRE, RADIUS
 from deformer_client import DeformerCase
-from ros_world import program
+from ros_world import program, tells_why
 
 CENTRE_M = CENTRE * 1e-3
 FINGER = 0.004
@@ -20,6 +20,7 @@ class Press(DeformerCase):
     TOOLS = ("finger",)
 
     @classmethod
+    @tells_why
     def setUpClass(cls):
         super().setUpClass()
         # What it was told last that it feels [N].

@@ -15,7 +15,7 @@ from soft_tissue_sim.msg import Result
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from ros_world import wait_for
+from ros_world import tells_why, wait_for
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PLOT_BAG = str(ROOT / "devel" / "lib" / "soft_tissue_sim" / "plot_bag")
@@ -33,6 +33,7 @@ def pressing_path(depth, seconds=0.5):
 
 class Python(unittest.TestCase):
     @classmethod
+    @tells_why
     def setUpClass(cls):
         rospy.init_node("python_test")
         cls.organ = sts.Organ()

@@ -1,4 +1,5 @@
 """A roscore of one's own with nodes under it, to do to them what cannot be done to those of a test's own roscore."""
+import functools
 import json
 import os
 import signal
@@ -7,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 import xmlrpc.client
 
 import rosgraph
@@ -102,7 +104,7 @@ class World:
 
     def start_core(self):
         core = self.start("roscore", "-p", str(self.port))
-        wait_for(lambda: rosgraph.is_master_online(self.uri), 20)
+        wait_for(lambda: rosgraph.is_master_online(self.uri), 60)
         return core
 
     def kill_core(self):
@@ -190,6 +192,18 @@ def figure(case, what, value):
 def program(name):
     """Where one of the package's programs is, as roslaunch finds it; rosrun passes over what lies below build/."""
     return find_node("soft_tissue_sim", name)[0]
+
+
+def tells_why(set_up):
+    """For setUpClass: what it throws is else in no result."""
+    @functools.wraps(set_up)
+    def told(*arguments):
+        try:
+            set_up(*arguments)
+        except Exception:
+            traceback.print_exc()
+            raise
+    return told
 
 
 def wait_for(condition, seconds=30):
